@@ -18,7 +18,7 @@ ROWS = "t,q1,q2,q3,counts1,counts2,counts3,u1,u2,u3,r1,r2,r3,gripper,missed\n0,0
     ("load", "text", "error"),
     [
         (Recording.load, ROWS + "# event: 1.2.3 s: x\n", RecordingError),
-        (JointCalibration.load, "slope = [1, 1, 1]\nzero = [0, 0, 0]\nstderr_zero = 5", InputError),
+        (JointCalibration.load, "slope = [1, 1, 1]\nzero = [0, 0, 0]\nremarks = 5", InputError),
         (JointCalibration.load, "slope = " + "[" * MANY, InputError),
         (load_arm, "l = " + "[" * MANY, ArmError),
         (load_excitations, '{"motions": ' + "[" * MANY, InputError),

@@ -6,7 +6,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "base": ["Bench", "Sample"],
-        "calibration": ["JointCalibration", "nominal_calibration"],
+        "calibration": ["JointCalibration", "fit_calibration", "nominal_calibration"],
         "connect": ["connect"],
         "recording": ["Recording"],
         "replay": ["ReplayBench"],

@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import InputError, SuspiciousArmWarning
-from ir50p_lab.inputs import vector3
+from ir50p_lab.inputs import vector3, vectors3
 from ir50p_lab.modelling.chain import lengths
 
 _HEAD = "# counts = zero + slope q: counts of the 10-bit converter, slope in counts/rad, q in rad, joints 1 to 3\n"
 _JOINTS = ("joint1", "joint2", "joint3")
-_MEASURED = ("remarks", *_JOINTS)  # what older files hold beside the lines
+_FULL = 1023.0
+_STEP_BACK = 300.0  # counts: if they fall by more from one angle to the next, the potentiometer has wrapped round
 
 
 @dataclass(frozen=True)
@@ -27,12 +28,12 @@ class JointCalibration:
     stderr_zero                                                                   (3,) counts
     source       where it is from
     arm          name of the arm it belongs to ('' for any)
+    points       what was measured: for each joint (angles, counts), or ()        rad, counts
+    remarks      what the fit found suspicious, sentences
     ============ ================================================================ =====================
 
-    Counts are those of a 10-bit converter, 0..1023. Keep one with `course.save_result`: then `connect()` takes it for
-    the bench it was measured on. A protractor is read to about half a degree, one or two counts, and counts are
-    averaged to a fraction of one: fit q = a + b counts, slope = 1/b, zero = -a/b. The other direction takes the errors
-    of q for a wider spread of angles and makes the slope too small.
+    Counts are those of a 10-bit converter, 0..1023. Make one with `fit_calibration`, keep it with
+    `course.save_result`: then `connect()` takes it for the bench it was measured on.
 
     Raises InputError if a number is not finite or a slope is 0. Warns SuspiciousArmWarning for a negative slope: then
     the joint runs away from its set point.
@@ -44,6 +45,8 @@ class JointCalibration:
     stderr_zero: tuple | None = None
     source: str = "assumed"
     arm: str = ""
+    points: tuple = ()
+    remarks: tuple = ()
 
     def __post_init__(self):
         for name in ("slope", "zero", "stderr_slope", "stderr_zero"):
@@ -66,6 +69,12 @@ class JointCalibration:
         """Counts at angles; both (3,) or (n, 3), not rounded."""
         return self.zero + np.multiply(self.slope, q)
 
+    @property
+    def residuals(self):
+        """For each joint with points, measured angle minus angle of the counts, (m,) rad; a list of arrays."""
+        lines = zip(self.points, self.slope, self.zero, strict=False)
+        return [np.array(q) - (np.array(counts) - zero) / slope for (q, counts), slope, zero in lines]
+
     def header(self):
         """Lines for the head of a recording."""
         lines = {"counts_per_rad": self.slope, "counts_at_zero": self.zero}
@@ -75,7 +84,9 @@ class JointCalibration:
         """Write it as a readable file (TOML). Returns the Path. Raises OSError if it cannot be written."""
         import tomlkit
 
-        data = {name: value for name, value in asdict(self).items() if value is not None}
+        data = {name: value for name, value in asdict(self).items() if name != "points" and value is not None}
+        for name, (q, counts) in zip(_JOINTS, self.points, strict=False):
+            data[name] = {"q": q, "counts": counts}
         Path(path).write_text(_HEAD + tomlkit.dumps(data), encoding="utf-8")
         return Path(path)
 
@@ -84,19 +95,28 @@ class JointCalibration:
         """Read a file that `save` wrote (or a person). Raises InputError that names the file and what is wrong."""
         try:
             data = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-            return cls(**{name: value for name, value in data.items() if name not in _MEASURED})
+            points = tuple(_pairs(**data.pop(name)) for name in _JOINTS if name in data)
+            return cls(points=points, remarks=tuple(data.pop("remarks", ())), **data)
         except (OSError, ValueError, TypeError, RecursionError) as error:
             said = f"{path} is no calibration ({error})"
             raise InputError(f"{said}: results(withdraw={Path(path).stem!r}), and calibrate again") from None
 
     def __repr__(self):
-        """A table of slopes and zeros with their standard errors; then the source."""
+        """A table of slopes and zeros with their standard errors, and of residuals; then the source and the remarks."""
         import pandas as pd
 
         columns = {"counts/rad": self.slope, "+- counts/rad": self.stderr_slope}
         columns |= {"counts at q = 0": self.zero, "+- counts": self.stderr_zero}
+        columns["rms residual, deg"] = [np.degrees(np.sqrt(np.mean(one**2))) for one in self.residuals] or None
         table = pd.DataFrame(columns, index=_JOINTS).to_string(float_format="%.2f")
-        return f"{table}\nsource: {self.source}"
+        return "\n".join((table, f"source: {self.source}", *self.remarks))
+
+
+def _pairs(q, counts):
+    """What was measured at one joint, from its table in a file."""
+    if np.shape(q) != np.shape(counts):
+        raise InputError(f"{len(q)} angles q but {len(counts)} counts of a joint: they belong together in pairs")
+    return tuple(q), tuple(counts)
 
 
 # Bench data of an older ROB3 (public repository eurobtec/rob3): counts of a 10-bit converter per rad of axes 1-3.
@@ -115,3 +135,86 @@ def nominal_calibration(arm):
     low, high = np.clip((arm.q_min, arm.q_max), -np.pi, np.pi)
     slope = np.minimum(_SISTER_SLOPE, 2 * (_MIDDLE - _LOWEST) / (high - low))
     return JointCalibration(slope, _MIDDLE - slope * 0.5 * (low + high), source="nominal, not measured")
+
+
+def fit_calibration(q, counts, *, arm="", source="measured"):
+    """Fit counts = zero + slope q to an experiment: the joint stands at angles q, the converter shows counts (4.1.2).
+
+    Which of the two carries the error decides how to fit. A protractor is read to about half a degree, which is one or
+    two counts; counts are averaged to a fraction of one. So the angle is the uncertain number, and q is regressed on
+    counts: q = a + b counts, slope = 1/b, zero = -a/b. The usual direction (counts on q) would take the errors of q for
+    a wider spread of angles and make the slope too small, by the factor var(q)/(var(q) + var(error)). With ten points
+    over a wide range the two differ by less than their standard errors; with a narrow one they do not.
+
+    Args:
+        q, counts: (m, 3), m poses of the whole arm. Angles in rad, counts of the 10-bit converter.
+        arm: Arm or its name, saved with it. source: kept with it (who measured, when).
+
+    Returns: JointCalibration with standard errors, points and residuals; its
+    `remarks` name what looks wrong: a bow that a line cannot follow (F test against a cubic), a point that lies far
+    off, few points, a narrow range, a reading at the end of the track.
+    Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
+    that does not change or does not follow its angle (a potentiometer that wraps, cables of two joints swapped).
+    """
+    q, counts = vectors3("q", q), vectors3("counts", counts, unit="counts")
+    if q.ndim != 2 or q.shape != counts.shape or len(q) < 3:
+        raise InputError(f"q has shape {q.shape}, counts have {counts.shape}: give a row per pose, in pairs, 3 or more")
+    if np.abs(q).max() > 2 * np.pi:
+        raise InputError(f"q holds {np.abs(q).max():g} rad, more than a turn: in degrees? Use np.radians")
+    if counts.min() < 0 or counts.max() > _FULL:
+        raise InputError(f"counts are {counts.min():g} to {counts.max():g}; the 10-bit converter gives 0 to 1023")
+    fits = [_line(joint, *pair) for joint, pair in enumerate(zip(q.T, counts.T, strict=True), 1)]
+    slope, zero, stderr_slope, stderr_zero, points, remarks = zip(*fits, strict=True)
+    arm = getattr(arm, "name", arm)
+    return JointCalibration(slope, zero, stderr_slope, stderr_zero, source, arm, points, sum(remarks, ()))
+
+
+def _line(joint, q, counts):
+    """(slope, zero, stderr_slope, stderr_zero, points, remarks) of one joint."""
+    if np.ptp(q) == 0 or np.ptp(counts) == 0:
+        raise InputError(f"joint {joint}: nothing moved. Is it the potentiometer of that joint, and is it connected?")
+    (b, a), cov = np.polyfit(counts, q, 1, cov=True)
+    r2 = np.corrcoef(q, counts)[0, 1] ** 2
+    back = -(np.sign(b) * np.diff(counts[np.argsort(q)])).min()
+    if r2 < 0.5 or back > _STEP_BACK:
+        said = f"correlation squared {r2:.2f}, largest step back {max(back, 0.0):.0f} counts"
+        asked = "other poses, cables swapped, the gap of its track in the travel? bench-test finds out"
+        raise InputError(f"joint {joint}: the counts do not follow the angle ({said}): {asked}")
+    slope, zero = 1 / b, -a / b
+    # errors of a and b carried over to first order
+    variances = cov[0, 0] / b**4, (cov[1, 1] + zero**2 * cov[0, 0] + 2 * zero * cov[0, 1]) / b**2
+    errors = [float(np.sqrt(max(0.0, v))) for v in variances]
+    remarks = tuple(f"joint {joint}: {text}" for text in _remarks(q, counts, slope, zero))
+    return float(slope), float(zero), *errors, (tuple(q.tolist()), tuple(counts.tolist())), remarks
+
+
+def _remarks(q, counts, slope, zero):
+    if np.ptp(q) < 0.5:
+        yield f"the angles span {np.degrees(np.ptp(q)):.0f} deg only: use the whole travel"
+    if counts.min() <= 2 or counts.max() >= _FULL - 2:
+        yield "a reading lies at the end of the converter's range: the potentiometer may turn on without it"
+    if len(q) < 6:
+        yield f"only {len(q)} points: a bow or a misread point would not show; measure 10"
+        return
+    off = q - (counts - zero) / slope
+    powers = np.vander((counts - counts.mean()) / np.ptp(counts), 4)
+    line, bend = powers[:, 2:], powers[:, :2]
+    alone = [_beyond_noise(line, one, q, 1e-3 / len(q)) for one in np.eye(len(q))]  # a column that frees one point
+    if max(alone) > 1:
+        far = np.argmax(alone)
+        point = f"point {far + 1} (q = {np.degrees(q[far]):.1f} deg, {counts[far]:.1f} counts)"
+        yield f"{point} lies {np.degrees(abs(off[far])):.1f} deg off the line, far more than the others: misread?"
+    elif _beyond_noise(line, bend, q, 0.01) > 1:
+        bow = np.abs(powers @ np.linalg.lstsq(powers, off)[0]).max()
+        yield f"the line leaves a bow of {np.degrees(bow):.1f} deg that is no noise: angles there are that much off"
+
+
+def _beyond_noise(columns, more, y, chance):
+    """F of adding the columns `more` to a linear fit of y, over the F that noise exceeds with this `chance`."""
+    from scipy.special import fdtri
+
+    both = np.column_stack([columns, more])
+    without, left = (((y - A @ np.linalg.lstsq(A, y)[0]) ** 2).sum() for A in (columns, both))
+    free, added = len(y) - both.shape[1], both.shape[1] - columns.shape[1]
+    F = (without - left) / added / max(left / free, 1e-12)  # 1e-6 rad are rounding
+    return F / fdtri(added, free, 1 - chance)

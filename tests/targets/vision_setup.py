@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from ir50p_lab.bench import JointCalibration, SimulatedBench
+from ir50p_lab.bench import SimulatedBench, fit_calibration
 from ir50p_lab.home import PROJECT
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import TablePlane, calibrate, load_image
@@ -34,7 +34,7 @@ def own_plane():
 @cache
 def calibrated(seed):
     """The line through nine angles of each joint, as the experiment of notebook 10 finds it."""
-    plant, lines = SimulatedBench(IR50P, seed=seed, record_to=False).plant, []
+    plant, points = SimulatedBench(IR50P, seed=seed, record_to=False).plant, []
     for joint in range(3):
         angles = np.linspace(IR50P.q_min[joint] + 0.05, IR50P.q_max[joint] - 0.05, 9)
         counts = []
@@ -42,7 +42,6 @@ def calibrated(seed):
             plant._joint[:] = 0.0
             plant._joint[joint] = angle
             counts.append(np.mean([plant.counts()[joint] for _ in range(50)]))
-        (b, a), cov = np.polyfit(counts, angles, 1, cov=True)  # the angle is the uncertain number
-        lines.append((1 / b, -a / b, np.sqrt(cov[0, 0]) / b**2))
-    slope, zero, stderr = np.transpose(lines)
-    return JointCalibration(slope, zero, stderr_slope=stderr, source="measured", arm=IR50P.name)
+        points.append((angles, counts))
+    q, counts = zip(*points, strict=True)
+    return fit_calibration(np.transpose(q), np.transpose(counts), arm=IR50P)

@@ -8,7 +8,7 @@ from cells import cell
 from scipy.signal import lfilter
 from told import told
 
-from ir50p_lab.bench import SimulatedBench
+from ir50p_lab.bench import SimulatedBench, fit_calibration
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.at_the_bench import measure_views as views
 from ir50p_lab.course.checking.grade import grade
@@ -86,16 +86,16 @@ def test_a_filter_of_any_library_is_taken():
     assert grade(task("low_pass"), low_pass).state == "right"
 
 
-def test_lines_of_a_hand_are_those_of_numpy():
-    """Another judge finds the same slopes, zeros and errors."""
+def test_lines_of_a_hand_are_those_of_the_course():
+    """The judge of the package finds the same slopes, zeros and errors."""
     low, high = np.array([IR50P.q_min, IR50P.q_max])
     angles, counts = views.by_hand(IR50P, np.linspace(0.95 * low, 0.95 * high, 12))
     np.testing.assert_allclose(2 * np.degrees(angles), np.rint(2 * np.degrees(angles)), atol=1e-9)
+    judged = fit_calibration(angles, counts)
     for joint in range(3):
         slope, offset, covariance = my_robot.fit_line(counts[:, joint], angles[:, joint])
-        judged, errors = np.polyfit(counts[:, joint], angles[:, joint], 1, cov=True)
-        np.testing.assert_allclose([slope, offset], judged, rtol=1e-6)
-        np.testing.assert_allclose(covariance, errors, rtol=1e-6)
+        np.testing.assert_allclose([1 / slope, -offset / slope], [judged.slope[joint], judged.zero[joint]], rtol=1e-6)
+        assert np.sqrt(covariance[0, 0]) / slope**2 == pytest.approx(judged.stderr_slope[joint], rel=1e-6)
 
 
 def test_pictures_name_their_axes_and_a_hand_reads_counts(capsys, monkeypatch):
