@@ -17,20 +17,20 @@ NOT_OURS = {"node_modules", "__pycache__"}
 ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {
-    "modelling": 1221,
+    "modelling": 1188,
     "signals": 462,
     "controllers": 501,
     "simulation": 621,
-    "bench": 2420,  # the lab's own file, the hand that pushes
+    "bench": 2336,
     "identification": 1649,
     "vision": 2245,
     "course": 8201,  # ten more functions of the student's
     "launcher": 540,
     "grading": 0,
-    "publishing": 485,
+    "publishing": 482,
     "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_575, 22_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_455, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,

@@ -1,9 +1,7 @@
 """What one run of a bench left behind: arrays, a head that says where they are from, a plot, a file."""
 
-import math
 import warnings
 from array import array
-from collections import namedtuple
 from pathlib import Path
 
 import numpy as np
@@ -15,15 +13,6 @@ from ir50p_lab.errors import InputError, RecordingError
 
 class RecordingWarning(UserWarning):
     """Something of a recording was left out when it was loaded."""
-
-
-class JointSummary(namedtuple("JointSummary", "joint start final error overshoot swing u_std")):
-    """How one joint did in a run; angles in rad, u in PWM counts; NaN where the recording has no reference or u.
-
-    joint: 1, 2, 3; start, final: angle first, and mean of the last second; error: last reference - final;
-    overshoot: how far the angle went beyond the last reference, seen from the start; swing: largest minus smallest
-    angle in the last 5 s (or the last half of a short run): hunting shows here; u_std: of the command, PWM counts.
-    """
 
 
 class Recording:
@@ -127,31 +116,13 @@ class Recording:
         events = [event for event in self.events if t0 <= event[0] <= t1]
         return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, events=events)
 
-    def recent(self, seconds):
-        """The last `seconds` as a Recording of its own; cheap while the run goes on."""
-        count = 1 + math.ceil(seconds / float(self.header.get("period_s", 0.01)))
-        return Recording(self._rows[-count * len(COLUMNS) :], self.header)
-
-    def metrics(self):
-        """How each joint did: list of three JointSummary. Raises RecordingError if there is no sample."""
-        if not len(self):
-            raise RecordingError("the recording has no sample: run the bench first")
-        t, q, r = self.t, self.q, self.reference
-        final = q[t > t[-1] - min(1.0, 0.5 * (t[-1] - t[0])) - 1e-9].mean(axis=0)
-        swing = np.ptp(q[t > t[-1] - min(5.0, 0.5 * (t[-1] - t[0])) - 1e-9], axis=0)
-        known = r[np.isfinite(r).all(axis=1)]
-        target = known[-1] if len(known) else np.full(3, np.nan)
-        step = target - q[0]
-        beyond = np.maximum(0.0, ((q - target) * np.sign(step)).max(axis=0))
-        overshoot = np.where(step == 0.0, np.nan, beyond)
-        columns = (q[0], final, target - final, overshoot, swing, self.u.std(axis=0))
-        return [JointSummary(joint, *row) for joint, row in enumerate(np.transpose(columns).tolist(), 1)]
-
     def plot(self):
         """Angles (measured: line; set point: dashed) and PWM over time, per joint: a matplotlib Figure.
 
         A notebook shows it at the end of a cell. Raises RecordingError if there is no sample.
         """
+        if not len(self):
+            raise RecordingError("the recording has no sample: run the bench first")
         import matplotlib
 
         from ir50p_lab.lab_figure import LabFigure, figure_style
@@ -161,15 +132,16 @@ class Recording:
             figure = LabFigure(figsize=(9.0, 4.8), layout="constrained")
             colours = matplotlib.rcParams["axes.prop_cycle"].by_key()["color"]
             axes = figure.subplots(2, 3, sharex=True, sharey="row", height_ratios=(3, 2))
-        known = np.isfinite(self.reference).any()
-        for j, joint in enumerate(self.metrics()):
-            above, below = axes[:, j]
+        known = self.reference[np.isfinite(self.reference).all(axis=1)]
+        end = self.q[self.t >= max(self.t[-1] - 1.0, self.t.mean())].mean(axis=0)
+        for j, (above, below) in enumerate(axes.T):
             above.plot(self.t, self.q[:, j], color=colours[j], lw=1.4, label="angle")
-            if known:
+            off = ""
+            if len(known):
+                off = f" ends {1000 * abs(known[-1, j] - end[j]):.0f} mrad off"
                 above.step(self.t, self.reference[:, j], where="post", color=dark, ls="--", lw=1.2, label="set point")
             below.step(self.t, self.u[:, j], where="post", color=colours[j], lw=0.8)
             below.vlines([t for t, _ in self.events], -275, 275, color=grey, ls=":", lw=1.0, label="event")
-            off = "" if math.isnan(joint.error) else f" ends {1000 * abs(joint.error):.0f} mrad off"
             above.set_title(f"joint {j + 1}{off}", fontsize=10.5, color=dark)
             below.set(ylim=(-275, 275), yticks=(-255, 0, 255), xlabel="t [s]")
         axes[0, 0].set_ylabel("angle [rad]")

@@ -11,11 +11,11 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "actuators": ["Actuators"],
         "arm": ["Arm"],
         "chain": ["dh_matrix", "dh_table", "forward_kinematics", "frames", "transform"],
-        "differential": ["jacobian", "singularity"],
+        "differential": ["jacobian"],
         "dynamics": ["coriolis_matrix", "energy", "forward_dynamics", "gravity", "inverse_dynamics", "mass_matrix"],
         "friction": ["Friction", "friction_torque"],
         "ik": ["inverse_kinematics", "reachability"],
-        "inertia": ["Body", "cylinder", "integrate_solid", "rod", "second_moment_tensor", "tube"],
+        "inertia": ["Body", "cylinder", "integrate_solid", "second_moment_tensor", "tube"],
         "named_arms": ["IR50P", "IR50P_WEAK_SHOULDER", "THESIS_A", "THESIS_C", "THESIS_RODS", "load_arm"],
         "symbolic": ["derive", "same_function"],
         "pose": [

@@ -1,11 +1,8 @@
-"""Differential kinematics: the geometric Jacobian, singular poses (1.32)-(1.55)."""
-
-from dataclasses import dataclass
+"""Differential kinematics: the geometric Jacobian (1.32)-(1.55)."""
 
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import lengths
 from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel
 
@@ -38,31 +35,3 @@ def jacobian(arm, q):
     Returns: (6, 3) or (n, 6, 3); rows 0-2 in m/rad (Jv), rows 3-5 without unit (Jw).
     """
     return evaluate(_jacobian, (lengths(arm), _SIX), q=q)
-
-
-@dataclass(frozen=True)
-class Singularity:
-    """How near a pose is to losing a direction of motion; the product of elbow, shoulder, l2 and l3 is |det Jv|.
-
-    elbow: sin q3 (0: stretched or folded). shoulder: tip distance from the vertical axis, m, with sign (0: joint 1 no
-    longer moves the tip). smallest: smallest singular value of Jv, m/rad: slowest tip speed per unit joint rate.
-    """
-
-    elbow: np.ndarray
-    shoulder: np.ndarray
-    smallest: np.ndarray
-
-
-def singularity(arm, q):
-    """Nearness to the singular poses: elbow stretched or folded (q3 = 0, pi), or tip on the vertical axis.
-
-    Args: arm: Arm; q: (3,) or (n, 3) rad. Returns: Singularity.
-    """
-    q = vectors3("q", q)
-    _, stretches, _ = np.linalg.svd(jacobian(arm, q)[..., :3, :])
-    _, l2, l3 = arm.l
-    return Singularity(
-        elbow=np.sin(q[..., 2]),
-        shoulder=l2 * np.cos(q[..., 1]) + l3 * np.cos(q[..., 1] + q[..., 2]),
-        smallest=stretches[..., -1],
-    )

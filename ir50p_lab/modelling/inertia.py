@@ -99,12 +99,6 @@ def _turned(name, inner, outer):
     )
 
 
-def rod():
-    """A slender rod of length L along x, its mass spread over the length alone."""
-    L, x = sympy.Symbol("L", positive=True), sympy.Symbol("x", real=True)
-    return integrate_solid("rod", (x, 0, 0), [(x, -L / 2, L / 2)])
-
-
 @dataclass(frozen=True, eq=False)
 class Body:
     """A rigid body in numbers: mass kg, com (3,) m, inertia (3, 3) kg m^2 about the centre of mass.

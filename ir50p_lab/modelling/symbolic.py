@@ -1,6 +1,6 @@
 """The equations of motion derived as formulas, in milliseconds: frames, Jacobians, M, C, g, energy (1.74)-(1.114)."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -8,7 +8,7 @@ import numpy as np
 import sympy
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.inputs import choice, vector3
+from ir50p_lab.inputs import choice
 from ir50p_lab.modelling import symbolic_steps as steps
 from ir50p_lab.modelling.symbolic_display import Formulas, short_names
 
@@ -127,33 +127,6 @@ class SymbolicModel:
                 f"no number for {', '.join(missing)}; give them as {{'{missing[0]}': 1.0, ...}} in SI units"
             )
         return [float(given.get(name, 0.0)) for name in self.symbols]
-
-    def numeric(self, arm):
-        """M, C and g as functions of numbers, for `arm` (see `values`): a NumericModel."""
-        values, parameters = self.values(arm), list(self.symbols.values())
-
-        def function(formula, *state):
-            compiled = sympy.lambdify([*map(list, state), parameters], formula, "numpy", cse=True)
-
-            def of_numbers(*numbers):
-                checked = [vector3(letter, x) for letter, x in zip(("q", "qd"), numbers, strict=False)]
-                return np.squeeze(np.array(compiled(*checked, values), dtype=float))
-
-            return of_numbers
-
-        return NumericModel(M=function(self.M, self.q), C=function(self.C, self.q, self.qd), g=function(self.g, self.q))
-
-
-@dataclass(frozen=True)
-class NumericModel:
-    """The symbolic model evaluated in numbers: an independent route, not a fast one. q rad, qd rad/s, both (3,).
-
-    M(q): mass matrix, (3, 3) kg m^2; C(q, qd): Coriolis matrix, (3, 3) N m s/rad; g(q): gravity torque, (3,) N m.
-    """
-
-    M: Callable
-    C: Callable
-    g: Callable
 
 
 def derive(*, links="in-line", general=False):

@@ -28,7 +28,7 @@ _RUNTIME = "pyodide.js pyodide.mjs pyodide.asm.wasm python_stdlib.zip".split()
 
 
 def build(pyodide, target):
-    """Write the site into a folder. pyodide: folder or address, with pyodide.js and pyodide-lock.json."""
+    """Write the site into a folder. pyodide: folder or address; of its packages those the course needs are taken."""
     try:
         from pyodide_lock import PyodideLockSpec
         from pyodide_lock.utils import add_wheels_to_spec
@@ -39,17 +39,14 @@ def build(pyodide, target):
         here = Path(room)
         runtime = here / "static" / "pyodide"
         runtime.mkdir(parents=True)
-        remote = pyodide.startswith("http")
-        if remote:
-            _fetch(pyodide, "pyodide-lock.json", runtime)
-        else:
-            shutil.copytree(pyodide, runtime, dirs_exist_ok=True)
+        address = pyodide if "://" in pyodide else Path(pyodide).resolve().as_uri()
+        _fetch(address, "pyodide-lock.json", runtime)
         lock = PyodideLockSpec.from_json(runtime / "pyodide-lock.json")
         theirs = set(lock.packages)
         lock = add_wheels_to_spec(lock, _wheels(runtime, theirs), base_path=runtime)
         code = "pyodide.asm.js" if lock.info.version.startswith("0.") else "pyodide.asm.mjs"
-        for file in (code, *_RUNTIME, *_files(lock, theirs)) if remote else ():
-            _fetch(pyodide, file, runtime)
+        for file in (code, *_RUNTIME, *_files(lock, theirs)):
+            _fetch(address, file, runtime)
         lock.to_json(runtime / "pyodide-lock.json")
         kernel = {
             "pyodideUrl": "./static/pyodide/pyodide.js",

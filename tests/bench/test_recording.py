@@ -278,7 +278,7 @@ def test_times_in_another_unit_than_the_head_says_are_refused(tmp_path, unit):
 def test_what_is_not_known_is_an_empty_cell(tmp_path):
     loaded = Recording.load(file_of(tmp_path, f"{','.join(COLUMNS)}\n0,1,1,1{',' * 11}\n1,1,1,1{',' * 11}\n"))
     assert np.isnan(loaded.u).all() and np.isnan(loaded.counts).all() and np.isnan(loaded.missed).all()
-    assert len(loaded.metrics()) == 3 and not loaded.simulated and "unknown origin" in repr(loaded)
+    assert not loaded.simulated and "unknown origin" in repr(loaded)
 
 
 @pytest.mark.parametrize("head", [rb"# bench: K\xfcche \u2026 C:\x5cxy", "# bench: Küche … C:\\xy".encode()])
@@ -347,16 +347,6 @@ def step_answer():
     return Recording.from_arrays(t, q, u=u, reference=np.tile([1.0, 0.6, -1.0], (1000, 1)), header=HEAD)
 
 
-def test_metrics_of_an_answer_known_in_closed_form():
-    first, second, third = step_answer().metrics()
-    t = np.arctan2(-3, 8) / 8 + np.pi / 8  # where the derivative of the answer is zero first
-    peak = -np.exp(-3 * t) * np.cos(8 * t)
-    assert first.overshoot == pytest.approx(peak, abs=1e-3) == third.overshoot
-    assert (second.overshoot, second.error) == pytest.approx((max(0.0, 0.5 * (1 + peak) - 0.6), 0.1), abs=1e-3)
-    assert (first.start, first.final, first.error, first.swing) == pytest.approx((0, 1, 0, 0), abs=1e-4)
-    assert first.u_std == pytest.approx(np.std(255 * np.exp(-step_answer().t)))
-
-
 def test_between_keeps_times_and_says_that_it_is_a_part():
     part = step_answer().between(2.0, 3.0)
     assert (part.t[0], part.t[-1], len(part)) == (pytest.approx(2.0), pytest.approx(3.0), 101)
@@ -383,9 +373,8 @@ def test_plot_without_reference_without_u_without_samples():
     assert figure.axes[0].get_title() == "joint 1" and "unknown origin" in figure.get_suptitle()
     assert len(figure.axes[0].get_lines()) == 1
     Recording.from_arrays([0.0], np.zeros((1, 3))).plot()
-    for what in (Recording.plot, Recording.metrics):
-        with pytest.raises(RecordingError, match="no sample"):
-            what(Recording.from_arrays([], np.zeros((0, 3))))
+    with pytest.raises(RecordingError, match="no sample"):
+        Recording.from_arrays([], np.zeros((0, 3))).plot()
 
 
 def test_events_in_the_middle_of_a_run_survive(tmp_path):

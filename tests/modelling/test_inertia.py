@@ -5,7 +5,7 @@ import pytest
 import sympy
 
 from ir50p_lab.errors import ArmError, InputError
-from ir50p_lab.modelling import Arm, Body, cylinder, integrate_solid, rod, rot_x, rot_z, tube
+from ir50p_lab.modelling import Arm, Body, cylinder, integrate_solid, rot_x, rot_z, tube
 
 m, a, b, c, R, r, L = sympy.symbols("m a b c R r L", positive=True)
 
@@ -30,7 +30,6 @@ TEXTBOOK = {  # any handbook of mechanics; the axis of the turned solids is x
     cylinder: (m * R**2 / 2, *[m * (3 * R**2 + L**2) / 12] * 2),
     tube: (m * (R**2 + r**2) / 2, *[m * (3 * (R**2 + r**2) + L**2) / 12] * 2),
     cone: (3 * m * R**2 / 10, *[3 * m * (4 * R**2 + L**2) / 80] * 2),
-    rod: (0, m * L**2 / 12, m * L**2 / 12),
 }
 
 
