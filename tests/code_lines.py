@@ -21,7 +21,7 @@ BUDGETS = {
     "signals": 462,
     "controllers": 501,
     "simulation": 621,
-    "bench": 2336,
+    "bench": 2408,
     "identification": 1649,
     "vision": 2245,
     "course": 8201,  # ten more functions of the student's
@@ -30,7 +30,7 @@ BUDGETS = {
     "publishing": 482,
     "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_455, 22_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_527, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,

@@ -1,5 +1,6 @@
 """What one run of a bench left behind: arrays, a head that says where they are from, a plot, a file."""
 
+import math
 import warnings
 from array import array
 from pathlib import Path
@@ -115,6 +116,11 @@ class Recording:
         header = {**self.header, "cut": f"{t0:g} to {t1:g} s"}
         events = [event for event in self.events if t0 <= event[0] <= t1]
         return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, events=events)
+
+    def recent(self, seconds):
+        """The last `seconds` as a Recording of its own; cheap while the run goes on."""
+        count = 1 + math.ceil(seconds / float(self.header.get("period_s", 0.01)))
+        return Recording(self._rows[-count * len(COLUMNS) :], self.header)
 
     def plot(self):
         """Angles (measured: line; set point: dashed) and PWM over time, per joint: a matplotlib Figure.
