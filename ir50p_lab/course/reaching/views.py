@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.patches import Circle
 
 from ir50p_lab.course.draw.arm3d import ArmView, FrameView, SideView
-from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.pictures import show_picture
 from ir50p_lab.course.draw.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.modelling.chain import forward_kinematics, frames
@@ -16,11 +15,6 @@ _ARRIVED = 1.5  # s after which a followed ball has been caught up with
 def origin(simulated):
     """Where picture and arm are from, for the note in a figure."""
     return "rendered picture, simulated arm" if simulated else "photograph, real arm"
-
-
-def loop_figure():
-    """What passes from picture to motor, box by box (Figure 4.14). Returns: SVG."""
-    return drawing("picture_to_motors")
 
 
 def frames_figure(arm, q, T_base_cam, ball, T_base_board, simulated):
