@@ -23,14 +23,14 @@ BUDGETS = {
     "simulation": 621,
     "bench": 2420,  # the lab's own file, the hand that pushes
     "identification": 1649,
-    "vision": 2245,
-    "course": 8201,  # ten more functions of the student's
+    "vision": 2150,
+    "course": 7947,  # ten more functions of the student's
     "launcher": 540,
     "grading": 0,
     "publishing": 485,
     "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_575, 22_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_226, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
