@@ -8,10 +8,10 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from matplotlib.colors import rgb_to_hsv
 from matplotlib.patches import FancyBboxPatch
 
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
-from ir50p_lab.vision import rgb_to_hsv
 
 _BOX = {"boxstyle": "round,pad=0.8", "fc": "#EDF3F8", "ec": "#0072B2"}
 _ARROW = {"arrowstyle": "-|>", "color": COLOURS["dark"], "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
@@ -185,7 +185,7 @@ def colour_solids():
     steps = np.linspace(0, 255, 9)
     rgb = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
     rgb = rgb[(rgb == 0).any(axis=1) | (rgb == 255).any(axis=1)]
-    hue, saturation, value = rgb_to_hsv(rgb).T
+    hue, saturation, value = (rgb_to_hsv(rgb / 255) * (360, 1, 1)).T
     figure, cube, cone = subplots(9.0, 4.2, cols=2, projection="3d")
     chroma, angle = saturation * value, np.radians(hue)
     in_cone = np.column_stack([chroma * np.cos(angle), chroma * np.sin(angle), value])

@@ -1,10 +1,9 @@
-"""Pictures of notebook 03: arrows of the joints, axis and lever, the way out, where not, steps to a place."""
+"""Pictures of notebook 03: arrows of the joints, the way out, where not, steps to a place."""
 
 import numpy as np
 from matplotlib.patches import Circle
 
 from ir50p_lab.course.draw.arm3d import ArmView, SideView
-from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.modelling.chain import forward_kinematics
 from ir50p_lab.modelling.differential import jacobian
@@ -68,11 +67,6 @@ def arrows_panel(arm):
         return f"arrows 2 and 3 are {np.degrees(np.arctan2(across, along)):.0f} degrees apart"
 
     return figure, turn
-
-
-def axis_and_lever():
-    """A point that turns about an axis, two levers from the axis to it, and its one velocity: SVG."""
-    return drawing("axis_and_lever")
 
 
 def way_out(arm, distances, speeds, limit):

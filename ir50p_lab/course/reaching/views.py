@@ -1,26 +1,18 @@
-"""Figures of notebook 18: loop and frames, the picture beside the arm, a path, a reach over time, the error budget."""
+"""Figures of notebook 18: the frames, the picture beside the arm, a reading at a height, balls that roll."""
 
 import numpy as np
 from matplotlib.patches import Circle
 
-from ir50p_lab.course.draw.arm3d import ArmView, FrameView, SideView
-from ir50p_lab.course.draw.drawings import drawing
+from ir50p_lab.course.draw.arm3d import ArmView, FrameView
 from ir50p_lab.course.draw.pictures import show_picture
-from ir50p_lab.course.draw.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
-from ir50p_lab.modelling.chain import forward_kinematics, frames
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure, subplots
 
-_XYZ = (COLOURS["orange"], COLOURS["green"], COLOURS["blue"])
 _ARRIVED = 1.5  # s after which a followed ball has been caught up with
 
 
 def origin(simulated):
     """Where picture and arm are from, for the note in a figure."""
     return "rendered picture, simulated arm" if simulated else "photograph, real arm"
-
-
-def loop_figure():
-    """What passes from picture to motor, box by box (Figure 4.14). Returns: SVG."""
-    return drawing("picture_to_motors")
 
 
 def frames_figure(arm, q, T_base_cam, ball, T_base_board, simulated):
@@ -105,61 +97,6 @@ def height_figure(plane, ball, xy):
         return f"to_table(xy, height={height_mm / 1e3:.3f}) = ({1e3 * place[0]:.1f}, {1e3 * place[1]:.1f}) mm"
 
     return figure, update
-
-
-def trajectory_figure(arm, trajectory, ball):
-    """A planned path from the side: radius and height of the tip, a ball of 30 mm, clearance. Returns: LabFigure."""
-    figure, side, over = subplots(9.0, 3.6, cols=2, width_ratios=(1.1, 1))
-    T = frames(arm, trajectory.sample(np.linspace(0, trajectory.duration, 200))[:, 0])
-    tip, lowest = T[:, 3, :3, 3], T[:, 2:, 2, 3].min()  # of tip and elbow
-    view = SideView(side, arm, colour=COLOURS["blue"])
-    view.update(np.array(trajectory.points[-1]))
-    side.plot(np.hypot(tip[:, 0], tip[:, 1]), tip[:, 2], color=COLOURS["green"], linewidth=2)
-    side.add_patch(Circle((np.hypot(*ball[:2]), ball[2]), 0.03, fc="#C8202D", ec="none"))
-    side.set_title(f"Never below {100 * lowest:.0f} cm: over, then down")
-    t = np.linspace(0, trajectory.duration, 300)
-    for k, colour in enumerate(JOINTS):
-        over.plot(t, trajectory.sample(t)[:, 1, k], color=colour, label=f"joint {k + 1}")
-    over.set(xlabel="t [s]", ylabel="joint rate [rad/s]", title="Smooth: every piece from rest to rest")
-    over.legend(fontsize=8)
-    return figure
-
-
-def tip_figure(arm, recording, done, simulated):
-    """X, Y, Z of the tip over time, by potentiometers, with the goal dashed (Figure 4.20). Returns: LabFigure.
-
-    done: of a reach with two looks.
-    """
-    figure = new_figure(9.0, 4.6, rows=3, sharex=True, note="simulated arm" if simulated else "real arm")
-    t, p = recording.t, forward_kinematics(arm, recording.q)
-    second = done.looks[0].t
-    for ax, k, name, colour in zip(figure.axes, range(3), "XYZ", _XYZ, strict=True):
-        ax.plot(t, 1e3 * p[:, k], color=colour, linewidth=1)
-        ax.axhline(1e3 * done.goal[k], **SETPOINT)
-        ax.set_ylabel(f"{name} [mm]")
-        ax.axvline(second, color=COLOURS["grey"], linewidth=1)
-    first = figure.axes[0]
-    first.text(second, 0.06, "second look ", transform=first.get_xaxis_transform(), ha="right", fontsize=9)
-    beside = np.linalg.norm(p[t > t[-1] - 0.5].mean(axis=0) - done.goal)
-    title = f"By potentiometers {1e3 * beside:.0f} mm beside the goal at the end"
-    camera = f", by the camera {1e3 * done.miss:.1f} mm" if any(look.marker is not None for look in done.looks) else ""
-    first.set_title(title + camera)
-    figure.axes[-1].set_xlabel("t [s]")
-    return figure
-
-
-def budget_figure(budget, measured=()):
-    """Causes of error as bars, after one look and after two; measured: rms mm of each as dashed lines. LabFigure."""
-    figure, ax = subplots(9.0, 3.6)
-    rows, total = np.arange(len(budget))[::-1], 1e3 * budget.to_numpy()[-1]
-    for up, looks, colour in ((0.19, "one look", "sky"), (-0.19, "two looks", "blue")):
-        ax.barh(rows + up, 1e3 * budget[looks], 0.36, color=COLOURS[colour], label=looks)
-    for value in measured:
-        ax.axvline(1e3 * value, **SETPOINT)
-    ax.set_yticks(rows, budget.index)
-    ax.set(xlabel="rms at the tip [mm]", title=f"The second look takes {total[0]:.1f} mm down to {total[1]:.1f} mm")
-    ax.legend(fontsize=8)
-    return figure
 
 
 def follow_figure(logs, simulated):

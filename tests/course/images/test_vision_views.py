@@ -1,24 +1,14 @@
-"""Views of notebook 16: what they draw is what they were given, and every rendered picture says so."""
+"""The panel of notebook 16 learns what is clicked, and every rendered picture says that it is."""
 
 import io
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
 from PIL import Image
 
 from ir50p_lab.course.draw.pictures import STAMP, pictures_figure
-from ir50p_lab.course.draw.widgets import live
 from ir50p_lab.course.images import views
-from ir50p_lab.vision import (
-    RED,
-    Ball,
-    Balls,
-    canny_steps,
-    render_scene,
-    rgb_to_hsv,
-    to_grey,
-)
+from ir50p_lab.vision import RED, render_scene, to_grey
 from ir50p_lab.vision.rendering import SceneBall, bench_scene
 
 
@@ -33,78 +23,9 @@ def texts(figure):
 
 
 def test_every_picture_says_that_it_is_rendered(bench):
-    image, truth = bench
-    ball = truth.red_balls[0]
-    grey = to_grey(image)
-    figures = [
-        pictures_figure(("a", image), ("b", grey)),
-        views.numbers_figure(grey, 100, 100),
-        views.ball_hues_figure(image, ball)[0],
-        views.MaskView(image[::2, ::2]).figure,
-        views.canny_figure(canny_steps(grey, 60, 160), 60, 160),
-        views.balls_figure(image, Balls([Ball(ball.x, ball.y, ball.radius, 0.9)]), "found"),
-        views.sheet_figure(8 * [(image, [], (ball.x, ball.y, ball.radius))]),
-    ]
-    for figure in figures:
-        figure.savefig(io.BytesIO(), format="png")
-        assert STAMP in texts(figure)
-    assert "photograph" not in texts(pictures_figure(("mine", image), source="my_pictures/a.jpg"))
-
-
-def test_numbers_are_the_pixels(bench):
-    grey = to_grey(bench[0])
-    figure = views.numbers_figure(grey, 40, 50, n=3)
-    written = [int(t.get_text()) for t in figure.axes[0].texts]
-    assert written == grey[50:53, 40:43].ravel().tolist()
-
-
-def test_share_of_the_thesis_ranges(bench):
-    image, truth = bench
-    ball = truth.red_balls[0]
-    _, kept = views.ball_hues_figure(image, ball)
-    y, x = np.mgrid[: image.shape[0], : image.shape[1]]
-    h, s, _ = rgb_to_hsv(image[np.hypot(x - ball.x, y - ball.y) < 0.95 * ball.radius]).T
-    assert kept == pytest.approx(((h > 340) & (s > 0.2) & (s < 0.8)).mean())
-
-
-def test_mask_panel_redraws(bench):
-    image = bench[0][::2, ::2]
-    view = views.MaskView(image)
-    panel = live(view.figure, lambda s: view.update(RED.mask(image, saturation=s) > 0), s=(0.3, 1, 0.1, 0.3))
-    before = panel.image.value
-    panel.set(s=1.0)
-    assert panel.image.value != before and "% of the picture" in panel.status.value
-
-
-def test_crests_in_classes():
-    steps = canny_steps(np.repeat(np.repeat([[0, 20, 70, 70]], 9, axis=1), 20, axis=0).astype(np.uint8), 60, 160)
-    shown = np.asarray(views.canny_figure(steps, 60, 160).axes[2].images[0].get_array())
-    colours = {tuple(colour) for colour in shown.reshape(-1, 3).tolist()}
-    assert (shown[steps.thin > 160] == 1).all() and not shown[steps.thin == 0].any()
-    assert len(colours) == 3 and to_rgb("#56B4E9") in colours  # a step of 20 levels is weak
-
-
-@pytest.mark.parametrize("x", [3.0, 150.0, 316.0])
-@pytest.mark.parametrize("y", [4.0, 230.0])
-def test_labels_of_balls_stay_in_the_picture(x, y):
-    rejected = [((100.0, 100.0, 9.0), "not round")]
-    found = Balls([Ball(x, y, 20, 0.9)], rejected=rejected)
-    figure = views.balls_figure(np.zeros((240, 320, 3), np.uint8), found, "found")
-    figure.savefig(io.BytesIO(), format="png")
-    (ax,) = figure.axes
-    label, frame = ax.texts[0].get_window_extent(), ax.get_window_extent()
-    assert frame.x0 <= label.x0 and label.x1 <= frame.x1 and frame.y0 <= label.y0 and label.y1 <= frame.y1
-    drawn = [line.get_xydata().mean(axis=0) for line in ax.lines]
-    assert any(np.allclose(middle, (100, 100), atol=0.2) for middle in drawn)  # what was rejected is seen too
-
-
-def test_sheet(bench):
-    image, truth = bench
-    ball = truth.red_balls[0]
-    target = (ball.x, ball.y, ball.radius)
-    seen = [(image, [Ball(ball.x + 0.5, ball.y, ball.radius, 0.9)], target), (image, [], target)]
-    figure = views.sheet_figure(4 * seen)
-    assert [ax.get_title() for ax in figure.axes] == 4 * ["0.50 px off", "missed"]
+    assert STAMP in texts(pictures_figure(("a", bench[0]), ("b", to_grey(bench[0]))))
+    assert "photograph" not in texts(pictures_figure(("mine", bench[0]), source="my_pictures/a.jpg"))
+    assert STAMP in views.ClickColour(bench[0]).status.value
 
 
 def test_a_click_learns_the_colour(bench):

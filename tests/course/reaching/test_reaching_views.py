@@ -1,16 +1,13 @@
 """Figures of notebook 18: they say what is simulated, and show the numbers they are given."""
 
 import numpy as np
-import pandas as pd
 import pytest
 from matplotlib.text import Text
-from quick_locator import QuickLocator
 
-from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.course.reaching import views
-from ir50p_lab.modelling import IR50P, frames
-from ir50p_lab.vision import RenderedBench, Seen, TablePlane, plan, reach
+from ir50p_lab.modelling import IR50P
+from ir50p_lab.vision import Seen, TablePlane
 from ir50p_lab.vision.board_pose import inverse_transform
 from ir50p_lab.vision.reaching.result import FollowLog
 from ir50p_lab.vision.rendering import bench_camera
@@ -52,25 +49,6 @@ def test_the_height_moves_the_reading():
     update(0.0)
     (off,) = (float(word) for word in text_of(figure).split() if word.startswith("+"))
     assert off == pytest.approx(1e3 * np.linalg.norm(PLANE.to_table(xy, 0.0) - BALL[:2]), abs=0.1)
-
-
-def test_a_way_says_how_low_it_comes():
-    trajectory = plan(IR50P, rest_pose(IR50P), BALL + np.array([0, 0, 0.06]))
-    poses = trajectory.sample(np.linspace(0, trajectory.duration, 500))[:, 0]
-    lowest = frames(IR50P, poses)[:, 2:, 2, 3].min()  # of elbow and tip
-    assert f"Never below {100 * lowest:.0f} cm" in text_of(views.trajectory_figure(IR50P, trajectory, BALL))
-
-
-def test_tip_and_budget_show_their_numbers():
-    bench = SimulatedBench(IR50P, q0=rest_pose(IR50P), record_to=False)
-    world = RenderedBench(bench, BALL)
-    with bench:
-        done = reach(bench, QuickLocator(world, PLANE), rest=False)
-    text = text_of(views.tip_figure(IR50P, bench.recording, done, True))
-    assert f"beside the goal at the end, by the camera {1e3 * done.miss:.1f} mm" in text and "simulated arm" in text
-    assert "second look" in text
-    budget = pd.DataFrame({"one look": [3e-3, 4e-3, 5e-3], "two looks": [1e-3, 0.0, 1e-3]}, ["marker", "camera", "all"])
-    assert "takes 5.0 mm down to 1.0 mm" in text_of(views.budget_figure(budget, (5e-3, 1e-3)))
 
 
 def test_following_shows_how_far_the_tip_is_ahead():

@@ -1,1 +1,0 @@
-"""Textbook image processing, step by step: hue, smoothing, edges, votes for circles."""
