@@ -2,7 +2,7 @@
 
 import re
 
-_NO_CIRCLE_YET = re.compile(r"^    \.\.\.  # .*\n    return \.\.\.\n", re.M)
+_NO_CIRCLE_YET = re.compile(r"^    \.\.\..*\n    return \.\.\.\n", re.M)
 _RIGHT = """\
     place = centre + radius * np.array([np.cos(turned), np.sin(turned), 0])
     q = my_robot.reach(place, arm.l, first, parts(arm).limits)
