@@ -5,6 +5,7 @@ CI runs this file by its name: it takes a minute or two, and `ir50p_lab test` is
 
 import re
 import shutil
+from contextlib import contextmanager
 
 import nbformat
 import pytest
@@ -37,24 +38,37 @@ def handed_in(page, number, name):
     assert "right, and yours" in run(page, number, solutions.source(name) + check)
 
 
+@contextmanager
+def opened(browser, path, home):
+    """A notebook in a JupyterLab of its own; a student's own folder is `mine` in `home`."""
+    shutil.copy(path, home)
+    context = browser.new_context(viewport={"width": 1300, "height": 1000})
+    page = context.new_page()
+    with running_lab(home, IR50P_HOME=str(home / "mine")) as (address, _):
+        page.goto(address.format(path.name), wait_until="commit")
+        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+        yield page
+    context.close()
+
+
+def code_cells(path, first):
+    """Number and text of each cell with code, its questions answered; `first` stands before the first."""
+    for number, cell in enumerate(nbformat.read(path, as_version=4).cells):
+        if cell.cell_type == "code":
+            source = re.sub(r'^(predict\("[^"]+"), \.\.\.', r"\1, 1.25", first + cell.source, flags=re.M)
+            yield number, source.replace('"..."', '"as it had to come"')
+            first = ""
+
+
 @pytest.mark.notebook
 @pytest.mark.emulator
 def test_a_student_measures(browser, tmp_path):
-    shutil.copy(NOTEBOOK, tmp_path)
-    page = browser.new_context().new_page()
-    said = {}
-    with running_lab(tmp_path, IR50P_HOME=str(tmp_path / "mine")) as (address, _):
-        page.goto(address.format(NOTEBOOK.name), wait_until="commit")
-        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
-        for number, cell in enumerate(nbformat.read(NOTEBOOK, as_version=4).cells):
-            if cell.cell_type != "code":
-                continue
-            source = (PLUG_IN if not said else "") + cell.source
+    everything = ""
+    with opened(browser, NOTEBOOK, tmp_path) as page:
+        for number, source in code_cells(NOTEBOOK, first=PLUG_IN):
             if asked := re.search(r'^check\("(\w+)", \w+\)', source, re.M):
                 handed_in(page, number, asked[1])
             else:
-                source = re.sub(r'^(predict\("[^"]+"), \.\.\.', r"\1, 1.25", source)
-                said[number] = run(page, number, source.replace('"..."', '"as it had to come"'))
-    everything = "".join(said.values())
+                everything += run(page, number, source)
     assert "Bench: board on emulated" in everything and "The simulated arm instead" not in everything
     assert "Kept: calibration-1" in everything and "calibration: yours, calibration-2" in everything

@@ -3,15 +3,18 @@
 All that lies between a cell and these is the package itself: `connect()` finds the board, `open_camera()` the webcam.
 """
 
+import os
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 from ir50p_lab.bench import SerialBench, nominal_calibration, serial_bench
 from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.simulated_arm import SimulatedArm
 from ir50p_lab.course import save_result
+from ir50p_lab.course.at_the_bench import drive_views
 from ir50p_lab.course.torque.views import training_run
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import load_arm
@@ -20,6 +23,7 @@ from ir50p_lab.vision import camera as cameras
 from tests.emulator.virtual import VirtualBoard
 
 PICTURES = "../data/calibration"
+PORT = Port("emulated", "Mega 2560")
 
 
 class ArmOnATable:
@@ -73,7 +77,7 @@ def plug_in(names):
         board.is_open = True
         return board
 
-    sys.modules["ir50p_lab.bench.connect"].list_ports = lambda: [Port("emulated", "Mega 2560")]
+    sys.modules["ir50p_lab.bench.connect"].list_ports = lambda: [] if board._unplugged else [PORT]
     serial_bench.open_port, serial_bench.Clock = open_port, board
     SerialBench._arguments = lambda self: None  # loops run in this process: another one has another board
     SerialBench.realtime = True
@@ -95,6 +99,30 @@ def measure():
         save_result("calibration", nominal_calibration(arm), bench)
         save_result("model", identify(training_run(arm), l2=arm.l[1]), bench)
         save_result("camera", calibrate(f"{PICTURES}/flat", progress=False), bench)
+
+
+def allow_the_cable(board):
+    """What 10 leaves behind for this board; a lab's own file that lets its cable be pulled; a hand that pulls it."""
+    with SerialBench(PORT.device, record_to=False) as bench:
+        bench.give_id()
+        save_result("calibration", nominal_calibration(bench.arm), bench)
+    file = Path(os.environ["IR50P_HOME"], "bench.toml")
+    file.write_text(f"[{bench.bench_id}]\nspeed = 3\nfaults = ['cable']")
+    os.environ["IR50P_BENCH_FILE"] = str(file)
+    make = drive_views.make
+
+    def make_and_pull(fault, bench):
+        make(fault, bench)  # asks for it
+        if fault == "cable":
+            board.unplug()
+
+    drive_views.make = make_and_pull
+
+
+def plug_in_again(board):
+    """A board whose cable was pulled has one again, and boots."""
+    board._unplugged = False
+    board.reset()
 
 
 def wait(board, seconds):

@@ -6,6 +6,7 @@ CI runs this file by its name: it takes minutes, and `ir50p_lab test` is to be q
 import json
 import re
 
+import circles
 import nbformat
 import pytest
 import solutions
@@ -75,25 +76,6 @@ def test_on_the_board(name, tmp_path):
     assert "Bench: board on emulated" in said and "The simulated arm instead" not in said
 
 
-CIRCLE = """
-def circle(t):
-    turned, rate, _ = my_robot.quintic(0.0, 2 * np.pi, around, t)
-    place = centre + radius * np.array([np.cos(turned), np.sin(turned), 0])
-    q = my_robot.reach(place, arm.l, first, parts(arm).limits)
-    J = my_robot.jacobian(my_robot.frames(q, arm.l), 3, place)[:3]
-    v = radius * rate * np.array([-np.sin(turned), np.cos(turned), 0])
-    return np.array([q, np.linalg.solve(J, v), np.zeros(3)])
-"""
-ALLOW_THE_CABLE = """
-emulated_bench.measure()
-with emulated_bench.SerialBench("emulated", record_to=False) as known:
-    table = f"[{known.bench_id}]\\nspeed = 3\\nfaults = ['cable']"
-import os, pathlib
-os.environ["IR50P_BENCH_FILE"] = os.environ["IR50P_HOME"] + "/bench.toml"
-pathlib.Path(os.environ["IR50P_BENCH_FILE"]).write_text(table)
-"""
-
-
 @pytest.mark.notebook
 @pytest.mark.emulator
 def test_a_student_drives_the_board_and_pulls_its_cable(tmp_path):
@@ -102,18 +84,18 @@ def test_a_student_drives_the_board_and_pulls_its_cable(tmp_path):
     last = next(k for k, cell in enumerate(notebook.cells) if cell.source.startswith("## 7"))
     sources = [cell.source for cell in notebook.cells[:last] if cell.cell_type == "code"]
     (asked,) = [k for k, source in enumerate(sources) if source.startswith("def circle")]
-    in_use = "the_circle = " + sources[asked].partition("the_circle = ")[2]
-    wrong = CIRCLE.replace("v = radius * rate", "v = rate")
-    sources[asked : asked + 1] = [f"{wrong}\n{in_use}", f"{CIRCLE}\n{in_use}"]
-    by_hand = "board.unplug() if fault == 'cable' else views.make(fault, bench)"
-    sources = [source.replace("views.make(fault, bench)", by_hand) for source in sources]
+    sources[asked : asked + 1] = [
+        circles.written(sources[asked], *circles.WRONG[0][:2]),
+        circles.written(sources[asked]),
+    ]
     pulled = next(k for k, source in enumerate(sources) if 'broken("cable")' in source)
-    sources.insert(pulled + 1, "board._unplugged = False\nboard.reset()\nviews.connect().close()")
-    notebook.cells = [nbformat.v4.new_code_cell(source) for source in [PLUG_IN + ALLOW_THE_CABLE, *sources]]
+    sources.insert(pulled + 1, "emulated_bench.plug_in_again(board)\nviews.connect().close()")
+    sources.insert(0, PLUG_IN + "emulated_bench.allow_the_cable(board)")
+    notebook.cells = [nbformat.v4.new_code_cell(source) for source in sources]
     run = run_notebook(notebook, timeout=900, variables={"IR50P_HOME": str(tmp_path)}, push=False)
     assert not run.error, run.error
     said = ["".join(output.get("text", "") for output in cell.outputs) for cell in run.cells]
-    assert "its speeds are not the change of its angles" in said[asked + 1] and "circle: yours" in said[asked + 2]
+    assert circles.WRONG[0][2] in said[asked + 1] and "circle: yours" in said[asked + 2]
     lost = next(text for text in said if "BoardLostError" in text)
     assert "Broken on the simulated arm" not in lost and "it brakes by itself 0.1 s after the last command" in lost
     assert "Bench: board on emulated" in said[pulled + 2]  # plugged in again
