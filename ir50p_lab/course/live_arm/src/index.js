@@ -200,9 +200,8 @@ class View {
     this.tipAt = this.joints[3];
     if (this.width && !this.turned && !this.dragging && !this.hand && this.hidden()) this.frame();
     this.showPush();
-    const { stops, table } = contacts(this.l, this.limits, this.q);
-    this.robot.alarm(this.track ? stops : [false, false, false]);
     if (!this.dragging && !this.hand && !this.error) {
+      const { stops, table } = contacts(this.l, this.limits, this.q);
       const touched = this.track ? [...stops.flatMap((at, i) => (at ? [`joint ${i + 1} at its stop`] : [])), ...(table ? ["touches the table"] : [])] : [];
       if (this.mostPush) touched.push("press on a link and drag to push it, or press Shift and arrows");
       this.say(touched.join(", "));
