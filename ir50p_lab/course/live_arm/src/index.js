@@ -137,8 +137,6 @@ class View {
       this.pose(this.q.map((old, k) => (k === i ? value : old)), true);
     });
     parts.joints.hidden = !options.sliders;
-    const clear = make("button", { textContent: "clear trail" });
-    clear.addEventListener("click", () => { this.written = []; this.trails[0].set([]); this.soon(); });
     const choice = (name, checked, changed) => {
       const tick = make("input", { type: "checkbox", checked });
       tick.addEventListener("change", () => {
@@ -158,7 +156,6 @@ class View {
       this.options = { ...this.options, readout: on };
       this.model.set("options", this.options);
     });
-    parts.layers.append(clear);
     this.written = [];
     this.showPlayer = playerBar(parts.player, {
       toggle: () => this.toggle(),
@@ -166,7 +163,7 @@ class View {
       speed: (rate) => { this.rate = rate; },
       loop: () => { this.again = !this.again; this.seen && this.tellPlayer(); },
     });
-    this.curves = new Curves(this.limits, this.l, (t) => this.seek(t));
+    this.curves = new Curves((t) => this.seek(t));
     parts.side.append(this.curves.canvas, this.curves.cursor);
   }
 
