@@ -13,7 +13,7 @@ class Row:
 
     ylabel: with unit; ylim: (low, high); curves: their names for the legend ("": not in it);
     levels: heights of dashed lines, in the colours of the curves if there is one for each of several curves;
-    style: matplotlib's format string, one for all curves or one for each; legend: its place.
+    style: matplotlib's format string, one for all curves or one for each.
     """
 
     ylabel: str
@@ -21,7 +21,6 @@ class Row:
     curves: tuple = ("",)
     levels: tuple = ()
     style: str | tuple = "-"
-    legend: str = "upper right"
 
 
 class Traces:
@@ -49,7 +48,7 @@ class Traces:
                 ax.axhline(level, **SETPOINT | {"color": colour})
             ax.set(xlim=xlim, ylim=row.ylim, ylabel=row.ylabel)
             if any(row.curves):
-                ax.legend(loc=row.legend, ncols=sum(map(bool, row.curves)), fontsize=9)
+                ax.legend(loc="upper right", ncols=sum(map(bool, row.curves)), fontsize=9)
         # as part of the axis label the note costs a panel nothing; a text of its own is drawn anew each time
         self.axes[-1].set_xlabel(f"{xlabel}  -  {note}" if note else xlabel)
         self.title(title)
@@ -62,11 +61,6 @@ class Traces:
         every = max(1, len(x) // 1500)
         for line, y in zip(self.lines, ys, strict=True):
             line.set_data(x[::every], y[::every])
-
-    def clear(self):
-        """Empty all curves."""
-        for line in self.lines:
-            line.set_data([], [])
 
     def title(self, text):
         """What is seen, above the first row."""
