@@ -162,8 +162,6 @@ def _entry(task, place, cases, found, right):
     numbers, name = found[:, *place], _name(task, place)
     if _alike(task, numbers, -right[:, *place]):
         return f"{name} has the wrong sign"
-    if _alike(task, np.abs(numbers), np.abs(right[:, *place])):
-        return f"{name} has the right size, but for some inputs the wrong sign"
     if np.ptp(numbers) == 0:
         return f"{name} is always {numbers[0]:g}"
     belonging = {f"what belongs into {_name(task, other)}": right[:, *other] for other in np.ndindex(right.shape[1:])}
