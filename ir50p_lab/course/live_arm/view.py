@@ -51,8 +51,8 @@ class LiveArm(anywidget.AnyWidget):
         on_drag: f(p, q_now) -> q or None, moves the arm when its tip is dragged to p (3,) m; None: inverse kinematics
         in the browser. frames: f(q) -> (4, 4, 4), transforms of frames 0 to 3 to the base: the arm is drawn by them,
         wrong ones too. badge: whose code moves the arm, 'yours' or "the course's"; by default told from them.
-        layers: which of table, shadow, ghost, trail, frames (their z axes are those of the joints), velocity
-        ellipsoid, force ellipsoid, workspace, ball are shown at first. ball: (p, radius) m.
+        layers: which of table, shadow, ghost, trail, frames, joint axes, velocity ellipsoid, force ellipsoid,
+        workspace, ball are shown at first. ball: (p, radius) m.
         height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
 
     Attributes: q, list of rad, in both directions; layers.

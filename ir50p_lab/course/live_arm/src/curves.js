@@ -1,6 +1,10 @@
 // Curves over time beside the arm: a plot for each joint, one for the commands, and a cursor that the player shares.
+import { contacts } from "./track.js";
+
 const JOINT = ["#0072B2", "#D55E00", "#009E73"], RUN = ["#0072B2", "#009E73"], INK = "#333333";
 const LEFT = 46, RIGHT = 14, TOP = 20, GAP = 24, BOTTOM = 34, APART = 11;
+const SET_POINT = "set point", STOP = "at its stop", TABLE = "on the table";
+const BANDS = { [STOP]: "#E69F0055", [TABLE]: "#56B4E955" };
 
 const niceStep = (span, most) => {
   const scale = 10 ** Math.floor(Math.log10(span / most));
@@ -10,8 +14,8 @@ const text = (value) => String(+value.toFixed(6)).replace("-", "\u2212");
 
 export class Curves {
   // seek: called with the time of a press or drag on the curves.
-  constructor(seek) {
-    this.track = null;
+  constructor(limits, lengths, seek) {
+    Object.assign(this, { limits, lengths, track: null });
     this.canvas = document.createElement("canvas"); // the curves
     this.canvas.setAttribute("role", "img");
     this.cursor = document.createElement("canvas"); // over them: what moves
@@ -43,9 +47,14 @@ export class Curves {
       lines: [0, 1, 2].map((joint) => ({ column: run.u + joint, colour: JOINT[joint], scale: 1, stairs: true, name: `${joint + 1}` })),
     }));
     this.plots = [...angles, ...commands].map((plot) => ({ ...plot, range: this.range(plot) }));
-    this.key = track.runs.some((run) => run.reference !== null) ? "set point" : "";
+    this.touched = track.times.map((_, row) => contacts(this.lengths, this.limits, [0, 1, 2].map((i) => track.value(row, track.runs[0].q + i))));
+    this.key = [
+      ...(track.runs.some((run) => run.reference !== null) ? [SET_POINT] : []),
+      ...(this.touched.some(({ stops }) => stops.includes(true)) ? [STOP] : []),
+      ...(this.touched.some(({ table }) => table) ? [TABLE] : []),
+    ];
     const said = track.runs.map((run) => run.label).filter(Boolean).join(" and ");
-    this.canvas.setAttribute("aria-label", ["angles of the three joints over time", said, this.key].filter(Boolean).join(", "));
+    this.canvas.setAttribute("aria-label", ["angles of the three joints over time", said, ...this.key].filter(Boolean).join(", "));
     this.drawn = null;
   }
 
@@ -99,6 +108,7 @@ export class Curves {
     this.plots.forEach((plot, k) => {
       const y0 = TOP + k * (h + GAP), [low, high] = plot.range;
       plot.Y = (value) => y0 + h - ((value - low) / (high - low)) * h;
+      if (k < 3) this.shadeContacts(pen, k, X, y0, h);
       Object.assign(pen, { lineWidth: 1, strokeStyle: "#E6E6E6", fillStyle: "#555555", font: "11px sans-serif", textBaseline: "middle" });
       pen.setLineDash([]);
       const rule = (x1, y1, x2, y2) => { pen.beginPath(); pen.moveTo(x1, y1); pen.lineTo(x2, y2); pen.stroke(); };
@@ -127,16 +137,23 @@ export class Curves {
         pen.fillText(name, X(this.t1) + 3, below);
       }
     });
-    if (this.key) this.drawKey(pen, height - 9);
+    this.drawKey(pen, height - 9);
     Object.assign(pen, { textAlign: "right", fillStyle: INK, font: "12px sans-serif" });
     pen.fillText("time [s]", LEFT + w, height - 9);
   }
 
-  // What dashes mean.
+  // What dashes and bands mean, in a line.
   drawKey(pen, y) {
-    Object.assign(pen, { textAlign: "left", font: "11px sans-serif", strokeStyle: INK, fillStyle: INK });
-    for (const dash of [0, 9]) pen.strokeRect(LEFT + dash, y, 5, 0);
-    pen.fillText(this.key, LEFT + 18, y);
+    Object.assign(pen, { textAlign: "left", font: "11px sans-serif", strokeStyle: INK });
+    let x = LEFT;
+    for (const name of this.key) {
+      pen.fillStyle = BANDS[name];
+      if (name === SET_POINT) for (const dash of [0, 9]) pen.strokeRect(x + dash, y, 5, 0);
+      else pen.fillRect(x, y - 6, 14, 12);
+      pen.fillStyle = INK;
+      pen.fillText(name, x + 18, y);
+      x += 30 + pen.measureText(name).width;
+    }
   }
 
   // Returns where the curve ends.
@@ -153,5 +170,16 @@ export class Curves {
     }
     pen.stroke();
     return last;
+  }
+
+  // Bands where a joint is at its stop, and under all joints where the arm touches the table.
+  shadeContacts(pen, joint, X, y0, h) {
+    this.touched.slice(0, -1).forEach(({ stops, table }, row) => {
+      const from = X(this.track.times[row]);
+      for (const name of [...(stops[joint] ? [STOP] : []), ...(table ? [TABLE] : [])]) {
+        pen.fillStyle = BANDS[name];
+        pen.fillRect(from, y0, X(this.track.times[row + 1]) - from, h);
+      }
+    });
   }
 }

@@ -137,6 +137,8 @@ class View {
       this.pose(this.q.map((old, k) => (k === i ? value : old)), true);
     });
     parts.joints.hidden = !options.sliders;
+    const clear = make("button", { textContent: "clear trail" });
+    clear.addEventListener("click", () => { this.written = []; this.trails[0].set([]); this.soon(); });
     const choice = (name, checked, changed) => {
       const tick = make("input", { type: "checkbox", checked });
       tick.addEventListener("change", () => {
@@ -156,6 +158,7 @@ class View {
       this.options = { ...this.options, readout: on };
       this.model.set("options", this.options);
     });
+    parts.layers.append(clear);
     this.written = [];
     this.showPlayer = playerBar(parts.player, {
       toggle: () => this.toggle(),
@@ -163,7 +166,7 @@ class View {
       speed: (rate) => { this.rate = rate; },
       loop: () => { this.again = !this.again; this.seen && this.tellPlayer(); },
     });
-    this.curves = new Curves((t) => this.seek(t));
+    this.curves = new Curves(this.limits, this.l, (t) => this.seek(t));
     parts.side.append(this.curves.canvas, this.curves.cursor);
   }
 
@@ -197,8 +200,9 @@ class View {
     this.tipAt = this.joints[3];
     if (this.width && !this.turned && !this.dragging && !this.hand && this.hidden()) this.frame();
     this.showPush();
+    const { stops, table } = contacts(this.l, this.limits, this.q);
+    this.robot.alarm(this.track ? stops : [false, false, false]);
     if (!this.dragging && !this.hand && !this.error) {
-      const { stops, table } = contacts(this.l, this.limits, this.q);
       const touched = this.track ? [...stops.flatMap((at, i) => (at ? [`joint ${i + 1} at its stop`] : [])), ...(table ? ["touches the table"] : [])] : [];
       if (this.mostPush) touched.push("press on a link and drag to push it, or press Shift and arrows");
       this.say(touched.join(", "));

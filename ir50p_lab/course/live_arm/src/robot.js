@@ -6,7 +6,7 @@ import {
 
 export const COLOURS = {
   column: "#aab2bd", dark: "#3a4048", upper: "#0072B2", fore: "#D55E00", x: "#D55E00", y: "#009E73", z: "#0072B2",
-  trail: "#009E73", target: "#CC79A7", ball: "#C8102E", second: "#009E73",
+  trail: "#009E73", target: "#CC79A7", ball: "#C8102E", second: "#009E73", alarm: "#E69F00",
 };
 
 // A plate along x, round at both ends: radius `far` at x = -length, `near` at x = 0.
@@ -32,7 +32,11 @@ export class Robot {
       : new MeshPhongMaterial({ color, shininess: 45, specular: "#333333", opacity, transparent: opacity < 1 });
     const paints = { column: paint(COLOURS.column), dark: paint(COLOURS.dark), upper: paint(upper), fore: paint(fore) };
     this.links = [0, 1, 2, 3].map(() => Object.assign(new Group(), { matrixAutoUpdate: false }));
-    const add = (link, geometry, colour) => this.links[link].add(new Mesh(geometry, paints[colour]));
+    const add = (link, geometry, colour) => {
+      const mesh = new Mesh(geometry, paints[colour]);
+      this.links[link].add(mesh);
+      return mesh;
+    };
     const stand = (radius, height, middle) => // in frame 1: y points up, the shoulder is the origin
       new CylinderGeometry(radius * s, 1.06 * radius * s, height, 48).translate(0, middle - l1, 0);
     const foot = new CylinderGeometry(0.105 * s, 0.115 * s, 0.03 * s, 56).rotateX(Math.PI / 2).translate(0, 0, 0.015 * s);
@@ -47,9 +51,11 @@ export class Robot {
     }
     const beam = new BoxGeometry(0.45 * l2, 0.034 * s, 0.056 * s).translate(-l2 / 2, 0, 0);
     add(2, beam, "upper");
-    add(1, stand(0.064, 0.006 * s, 0.034 * s), "dark");
-    add(1, hub(0.024 * s, 0.122 * s), "dark");
-    add(2, hub(0.021 * s, 0.084 * s), "dark");
+    this.hubs = [
+      add(1, stand(0.064, 0.006 * s, 0.034 * s), "dark"),
+      add(1, hub(0.024 * s, 0.122 * s), "dark"),
+      add(2, hub(0.021 * s, 0.084 * s), "dark"),
+    ];
     const hand = 0.085 * s, toFrame3 = (geometry) => geometry.rotateX(Math.PI / 2);
     add(3, toFrame3(plate(l3 - hand - 0.02 * s, 0.028 * s, 0.019 * s, 0.042 * s).translate(-hand - 0.02 * s, 0, 0)), "fore");
     add(3, alongX(0.015 * s, 0.03 * s).translate(-hand, 0, 0), "dark");
@@ -57,8 +63,9 @@ export class Robot {
     for (const side of [-1, 1]) {
       add(3, new BoxGeometry(0.066 * s, 0.007 * s, 0.018 * s).translate(-0.026 * s, side * 0.022 * s, 0), "dark");
     }
-    add(3, new SphereGeometry(0.009 * s, 24, 16), "fore");
+    this.tip = add(3, new SphereGeometry(0.009 * s, 24, 16), "fore");
     this.root = new Group().add(...this.links);
+    if (!shadow) this.hubs.forEach((mesh) => { mesh.material = mesh.material.clone(); });
   }
 
   // transforms: four Matrix4. What is not finite is not drawn.
@@ -74,5 +81,10 @@ export class Robot {
   hit(ray) {
     const [found] = ray.intersectObjects(this.links.slice(1)), frame = found?.object.parent;
     return found ? { link: this.links.indexOf(frame), point: frame.worldToLocal(found.point.clone()), at: found.point } : null;
+  }
+
+  // joints: three booleans, whether each is at a stop: its hub lights up.
+  alarm(joints) {
+    this.hubs.forEach((mesh, i) => { mesh.material.emissive.set(joints[i] ? COLOURS.alarm : "#000000"); });
   }
 }

@@ -1,7 +1,7 @@
 // What stands around the arm: light, table, and the layers that can be switched on and off.
 import {
   ArrowHelper, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight, DoubleSide,
-  Float32BufferAttribute, Group, HemisphereLight, LineBasicMaterial, LineSegments, Matrix4, Mesh,
+  Float32BufferAttribute, Group, HemisphereLight, LineBasicMaterial, LineDashedMaterial, LineSegments, Matrix4, Mesh,
   MeshBasicMaterial, MeshPhongMaterial, PolarGridHelper, Scene, SphereGeometry, Sprite, SRGBColorSpace,
   SpriteMaterial, Vector3,
 } from "three";
@@ -30,7 +30,7 @@ export function makeScene(reach) {
 }
 
 // A text that faces the eye; size: its height, m.
-function label(text, colour, size) {
+export function label(text, colour, size) {
   const canvas = document.createElement("canvas"), pen = canvas.getContext("2d"), font = "600 44px sans-serif";
   pen.font = font;
   canvas.width = Math.ceil(pen.measureText(text).width) + 16;
@@ -84,6 +84,12 @@ function ellipsoid(colour) {
   return Object.assign(mesh, { matrixAutoUpdate: false });
 }
 
+function thin(points, colour, dashed = false) {
+  const look = dashed ? new LineDashedMaterial({ color: colour, dashSize: 0.02, gapSize: 0.012 }) : new LineBasicMaterial({ color: colour });
+  const line = new LineSegments(new BufferGeometry().setAttribute("position", new Float32BufferAttribute(points.flat(), 3)), look);
+  return dashed ? line.computeLineDistances() : line;
+}
+
 // The reachable part of the plane of the arm: curves with one joint at an end of its travel, or the arm stretched.
 function workspace(l, [, second, third]) {
   const bends = third[0] < 0 && third[1] > 0 ? [third[0], 0, third[1]] : third, curves = [];
@@ -93,8 +99,7 @@ function workspace(l, [, second, third]) {
   };
   bends.forEach((bend) => sweep(...second, (q2) => [0, q2, bend]));
   second.forEach((q2) => sweep(...third, (bend) => [0, q2, bend]));
-  const lines = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(curves.flat(), 3));
-  return new LineSegments(lines, new LineBasicMaterial({ color: KEYS.workspace[0][0] }));
+  return thin(curves, KEYS.workspace[0][0]);
 }
 
 // All layers by name: Object3D each. Only what can be shown is there.
@@ -107,11 +112,17 @@ export class Layers {
     grid.position.z = 0.0006;
     table.add(top, grid);
     this.triads = [0, 1, 2, 3].map((i) => axes(0.17 * reach, String(i)));
+    this.joints = [1, 2, 3].map((i) => {
+      const name = label(`joint ${i}`, COLOURS.dark, 0.07 * reach);
+      name.position.z = 0.3 * reach;
+      const group = Object.assign(new Group(), { matrixAutoUpdate: false });
+      return group.add(thin([[0, 0, -0.25 * reach], [0, 0, 0.27 * reach]], COLOURS.dark, true), name);
+    });
     this.velocity = ellipsoid(KEYS["velocity ellipsoid"][0][0]);
     this.force = ellipsoid(COLOURS.target);
     this.space = workspace(lengths, limits);
     this.all = {
-      table, frames: new Group().add(...this.triads),
+      table, frames: new Group().add(...this.triads), "joint axes": new Group().add(...this.joints),
       "velocity ellipsoid": this.velocity, "force ellipsoid": this.force, workspace: this.space,
     };
     if (ball) {
@@ -129,6 +140,7 @@ export class Layers {
 
   place(transforms, q) {
     transforms.forEach((matrix, i) => this.triads[i].matrix.copy(matrix));
+    this.joints.forEach((group, i) => group.matrix.copy(transforms[i]));
     this.space.rotation.z = q[0];
     const J = jacobian(this.lengths, q), at = new Vector3().setFromMatrixPosition(transforms[3]);
     const speed = new Matrix4().set(...J.flatMap((row) => [...row, 0]), 0, 0, 0, 1);
