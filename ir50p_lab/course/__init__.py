@@ -10,7 +10,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "checking.check": ["check", "reset"],
-        "checking.numbers": ["progress", "solution"],
+        "checking.numbers": ["solution"],
         "lab_book.claims": ["ClaimError", "claim"],
         "lab_book.data_file": ["data_file"],
         "lab_book.predictions": ["helped_by", "keep", "measured", "note", "partners", "predict", "why"],

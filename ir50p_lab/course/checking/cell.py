@@ -197,7 +197,7 @@ def written_wrong(function):
 def is_copy(text, other):
     """Tell whether a text is a copy of another: at most one expression in six differs.
 
-    Names, layout and factors `1 *` are left out of the comparison first; added code is ignored.
+    Names and layout are left out of the comparison; added code is ignored.
     """
     steps = _steps(other)
     return (steps - _steps(text)).total() <= steps.total() // 6
@@ -205,7 +205,7 @@ def is_copy(text, other):
 
 def _steps(text):
     """The expressions of a program, one a statement, how often each; its own names are left out."""
-    tree = _Bare().visit(ast.parse(text))
+    tree = ast.parse(text)
     own = {getattr(one, "name", None) or getattr(one, "arg", None) for one in ast.walk(tree)}
     own |= {one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
     for one in ast.walk(tree):
@@ -213,26 +213,6 @@ def _steps(text):
             one.id = "_"
     parts = [part for one in ast.walk(tree) if isinstance(one, ast.stmt) for part in ast.iter_child_nodes(one)]
     return Counter(ast.dump(one) for one in parts if isinstance(one, ast.expr) and not isinstance(one, ast.Name))
-
-
-class _Bare(ast.NodeTransformer):
-    """Takes out what changes no number: 1 * x, x / 1, x + 0, - -x, np.array(x), x.copy()."""
-
-    def visit(self, node):
-        match node := super().visit(node):
-            case (
-                ast.BinOp(left=ast.Constant(value=1), op=ast.Mult(), right=bare)
-                | ast.BinOp(left=bare, op=ast.Mult() | ast.Div(), right=ast.Constant(value=1))
-                | ast.BinOp(left=ast.Constant(value=0), op=ast.Add(), right=bare)
-                | ast.BinOp(left=bare, op=ast.Add() | ast.Sub(), right=ast.Constant(value=0))
-                | ast.UnaryOp(op=ast.USub(), operand=ast.UnaryOp(op=ast.USub(), operand=bare))
-                | ast.Call(func=ast.Attribute(attr="array" | "asarray" | "copy"), args=[bare])
-                | ast.Call(func=ast.Attribute(value=bare, attr="copy"), args=[])
-            ):
-                return bare
-            case ast.Constant(value=int(number)):
-                return ast.Constant(float(number))
-        return node
 
 
 def _lines(text, node):

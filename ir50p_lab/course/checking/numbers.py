@@ -16,15 +16,13 @@ Rules for authors (`tests/course/test_numbers_of_rooms.py` tries every one, and 
 
 import difflib
 import importlib
-import textwrap
 from dataclasses import dataclass, replace
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.course.checking.note import Note, show
-from ir50p_lab.course.lab_book.progress import read_progress, record
+from ir50p_lab.course.lab_book.progress import record
 from ir50p_lab.course.lab_book.student_file import LabBookError
 from ir50p_lab.course.robot.catalogue import ORDER, is_function, task
 from ir50p_lab.errors import InputError
@@ -117,21 +115,6 @@ def solution(name):
     a function. Raises InputError for an unknown name, and for a function that is still to come.
     """
     return task(name).loan if is_function(str(name)) else find(name).right.copy()[()]
-
-
-def progress():
-    """Print all number exercises by notebook: done or open."""
-    try:
-        done, trouble = read_progress(), ""
-    except LabBookError as error:
-        done, trouble = {}, f" {error}"
-    numbers = everything()
-    for notebook, of_notebook in groupby(numbers, key=lambda one: one.notebook):
-        print(notebook)
-        for one in of_notebook:
-            state = "done" if one.name in done else "open"
-            print(f"  {one.name:<10} {state}  {textwrap.shorten(one.task, 80, placeholder=' ...')}")
-    print(f"{sum(one.name in done for one in numbers)} of {len(numbers)} exercises done.{trouble}")
 
 
 def everything(holding=""):

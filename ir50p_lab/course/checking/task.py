@@ -92,7 +92,7 @@ class Task:
     arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
-    routes: other solutions, as text; rights: functions whose answers are right as well;
+    routes: other solutions, as text; rights: functions of several results that are right as well;
     parts: names of what stands beside each other in the answer.
     results: names, where several things are returned: each is graded by itself; `tolerance` and `same` may be tuples
     then, one for each.
@@ -163,11 +163,8 @@ class Task:
         for other in self.rights:
             also = other(*case)
             try:
-                if self.results:
-                    each = zip(returned, right, also, self._of_each(self.tolerance), strict=True)
-                    right = tuple(b if _agrees(one, b, None, within) else a for one, a, b, within in each)
-                elif self.agrees(returned, also):
-                    right = also
+                each = zip(returned, right, also, self._of_each(self.tolerance), strict=True)
+                right = tuple(b if _agrees(one, b, None, within) else a for one, a, b, within in each)
             except (TypeError, ValueError):  # what came back is no answer
                 return right
         return right

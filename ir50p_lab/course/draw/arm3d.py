@@ -140,8 +140,7 @@ def _stage(ax, arm):
 class SideView:
     """The arm in the vertical plane through its column and a heading: radius to the right, height upwards.
 
-    `update(q, heading=...)` projects the arm on the plane of that heading (rad; by default joint 1's own), so that
-    front and back solutions of one target share a plane.
+    `update(q)` moves it; the heading is joint 1's own.
 
     Args: ax: 2-D axes; arm: Arm; colour: of the links; label: for the legend.
     Attributes: points: what is drawn, shoulder, elbow, tip as (radius, height), (3, 2) m.
@@ -155,11 +154,10 @@ class SideView:
         self._tip = ax.plot([], [], "o", color=COLOURS["dark"], ms=6, zorder=5)[0]
         self.update(q)
 
-    def update(self, q, heading=None):
+    def update(self, q):
         """Move the arm to q (3,) rad."""
         corners = frames(self.arm, q)[:, :3, 3]
-        heading = q[0] if heading is None else heading
-        radius = corners[:, :2] @ np.array([np.cos(heading), np.sin(heading)])
+        radius = corners[:, :2] @ np.array([np.cos(q[0]), np.sin(q[0])])
         self.points = np.column_stack([radius, corners[:, 2]])[1:]
         self._line.set_data(*self.points.T)
         self._tip.set_data(*self.points[2:].T)

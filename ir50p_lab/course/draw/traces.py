@@ -1,9 +1,8 @@
-"""Curves over time, drawn once or again as a slider moves: over one common axis, or in a column per joint."""
+"""Curves over one common time axis, drawn once or again as a slider moves."""
 
 from dataclasses import dataclass
-from itertools import chain
 
-from ir50p_lab.course.draw.style import SETPOINT, joint_columns, subplots
+from ir50p_lab.course.draw.style import SETPOINT, subplots
 
 STAMP = "simulated, not measured"
 
@@ -14,7 +13,7 @@ class Row:
 
     ylabel: with unit; ylim: (low, high); curves: their names for the legend ("": not in it);
     levels: heights of dashed lines, in the colours of the curves if there is one for each of several curves;
-    style: matplotlib's format string, one for all curves or one for each; legend: its place.
+    style: matplotlib's format string, one for all curves or one for each.
     """
 
     ylabel: str
@@ -22,7 +21,6 @@ class Row:
     curves: tuple = ("",)
     levels: tuple = ()
     style: str | tuple = "-"
-    legend: str = "upper right"
 
 
 class Traces:
@@ -50,7 +48,7 @@ class Traces:
                 ax.axhline(level, **SETPOINT | {"color": colour})
             ax.set(xlim=xlim, ylim=row.ylim, ylabel=row.ylabel)
             if any(row.curves):
-                ax.legend(loc=row.legend, ncols=sum(map(bool, row.curves)), fontsize=9)
+                ax.legend(loc="upper right", ncols=sum(map(bool, row.curves)), fontsize=9)
         # as part of the axis label the note costs a panel nothing; a text of its own is drawn anew each time
         self.axes[-1].set_xlabel(f"{xlabel}  -  {note}" if note else xlabel)
         self.title(title)
@@ -64,46 +62,9 @@ class Traces:
         for line, y in zip(self.lines, ys, strict=True):
             line.set_data(x[::every], y[::every])
 
-    def clear(self):
-        """Empty all curves."""
-        for line in self.lines:
-            line.set_data([], [])
-
     def title(self, text):
         """What is seen, above the first row."""
         self.axes[0].set_title(text)
-
-
-class JointPlots:
-    """Angles above, commands below, one column per joint. `update(run, ...)` draws simulation results.
-
-    Args: target: (3,) rad, drawn dashed; duration: s; unit: of the command; u_max: the command axis ends there;
-    labels: one for each run that will be drawn (a legend if there are several). Runs begin at 0 rad.
-
-    Attributes: figure (LabFigure), to be shown itself or with `live`.
-    """
-
-    def __init__(self, target, *, duration, unit, u_max, labels=("",)):
-        ranges = [sorted((0.0, angle)) for angle in target]
-        self.figure, self._q, self._u = joint_columns(duration, ranges, 1.08 * u_max, labels=labels, room=(0.25, 0.2))
-        for ax, angle in zip(self.figure.axes[:3], target, strict=True):
-            ax.axhline(angle, zorder=1.9, **SETPOINT)  # below what moves
-        for curve in chain(*self._u):
-            curve.set_drawstyle("steps-post")
-        self.figure.axes[3].set_ylabel(f"command [{unit}]")
-        self._titles = [ax.set_title("", fontsize=10) for ax in self.figure.axes[:3]]
-
-    def update(self, *runs, titles=("joint 1", "joint 2", "joint 3")):
-        """Draw one SimulationResult per label. Returns the figure.
-
-        Long titles cost a slider more time than all curves together: there, words belong in the status line.
-        """
-        for joint, title in enumerate(titles):
-            self._titles[joint].set_text(title)
-            for run, q, u in zip(runs, self._q[joint], self._u[joint], strict=True):
-                q.set_data(run.t, run.q[:, joint])
-                u.set_data(run.t, run.u[:, joint])
-        return self.figure
 
 
 def curves(t, lines, labels, ylabel, targets=()):

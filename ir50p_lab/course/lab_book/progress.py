@@ -14,16 +14,9 @@ def progress_path() -> Path:
     return home.path_setting(_VARIABLE) or home.home() / "progress.json"
 
 
-def _to_read() -> Path:
-    """The progress file; where there is none yet, that of earlier versions in the project's root."""
-    path, old = progress_path(), home.PROJECT / "progress.json"
-    moved = home.setting(_VARIABLE) or home.setting(home.VARIABLE)
-    return path if moved or path.exists() or not old.exists() else old
-
-
 def read_progress() -> dict[str, str]:
     """Return {exercise: time of the first right answer}; empty when there is no file yet. Raises LabBookError."""
-    return read_json(_to_read(), {"done": {}}, _is_progress)["done"]
+    return read_json(progress_path(), {"done": {}}, _is_progress)["done"]
 
 
 def _is_progress(content):

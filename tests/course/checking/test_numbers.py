@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import sympy
 
-from ir50p_lab.course import check, progress, solution
-from ir50p_lab.course.checking.numbers import Number, everything, grade
+from ir50p_lab.course import check, solution
+from ir50p_lab.course.checking.numbers import Number, grade
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import PROJECT
 
@@ -167,19 +167,3 @@ def test_only_the_room_asked_for_is_imported():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=PROJECT)
     rooms = ["ir50p_lab.course.checking.numbers", "ir50p_lab.course.start.numbers"]
     assert done.stdout.splitlines()[1] == f"{rooms} False"
-
-
-def test_progress_table(capsys, own_progress):
-    """Exercises that there are no more, dyn-3, are kept in the file and not counted."""
-    own_progress.write_text('{"done": {"dyn-3": "2020-01-01T00:00+00:00"}}')
-    check("start-5", solution("start-5"))
-    capsys.readouterr()
-    assert progress() is None
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "00_start_here"
-    assert [line.split()[:2] for line in lines[1:3]] == [["start-1", "open"], ["start-5", "done"]]
-    assert lines[-1] == f"1 of {len(everything())} exercises done."
-    assert list(json.loads(own_progress.read_text())["done"]) == ["dyn-3", "start-5"]
-    own_progress.write_text("[]")
-    progress()
-    assert "cannot be read" in capsys.readouterr().out

@@ -3,18 +3,9 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.controllers import PID
-from ir50p_lab.course.draw.traces import STAMP, JointPlots, Row, Traces
-from ir50p_lab.modelling import IR50P
-from ir50p_lab.simulation import simulate
+from ir50p_lab.course.draw.traces import STAMP, Row, Traces
 
 T = np.linspace(0, 1, 11)
-TARGET = np.array([0.8, 0.5, -0.7])
-
-
-@pytest.fixture(scope="module")
-def run():
-    return simulate(IR50P, PID((289, 225, 270), kd=(40, 30, 30), limit_pwm=255), TARGET, duration=2)
 
 
 def test_traces_say_that_they_are_simulated():
@@ -35,15 +26,3 @@ def test_traces_take_their_curves_in_order():
     assert view.axes[0].get_title() == "two"
     with pytest.raises(ValueError, match="argument"):
         view.update(T, T)
-
-
-def test_joint_plots_show_the_run(run):
-    view = JointPlots(TARGET, duration=2, unit="PWM", u_max=255)
-    assert view.update(run) is view.figure
-    for joint in range(3):
-        angle, command = view.figure.axes[joint], view.figure.axes[3 + joint]
-        assert any(np.array_equal(line.get_ydata(), run.q[:, joint]) for line in angle.lines)
-        assert any(np.array_equal(line.get_ydata(), run.u[:, joint]) for line in command.lines)
-        assert angle.get_ylim()[0] < min(0, TARGET[joint]) and angle.get_ylim()[1] > max(0, TARGET[joint])
-        assert angle.get_title() == f"joint {joint + 1}"
-    assert "[PWM]" in view.figure.axes[3].get_ylabel()

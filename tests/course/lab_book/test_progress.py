@@ -63,17 +63,3 @@ def test_the_file_lies_in_the_students_folder(monkeypatch, tmp_path):
     monkeypatch.setenv("IR50P_HOME", str(tmp_path / "new" / "folder"))
     record("start-1")
     assert list(json.loads((tmp_path / "new" / "folder" / "progress.json").read_text())["done"]) == ["start-1"]
-
-
-def test_progress_of_an_earlier_version_is_taken_over(monkeypatch, tmp_path):
-    """It lay in the project's root; what is new goes to the student's folder, and the old file stays as it is."""
-    monkeypatch.delenv("IR50P_PROGRESS", raising=False)
-    monkeypatch.delenv("IR50P_HOME", raising=False)
-    monkeypatch.setattr(home, "PROJECT", tmp_path)
-    (tmp_path / "notebooks").mkdir()
-    old = tmp_path / "progress.json"
-    old.write_text('{"done": {"start-5": "2020-01-01T00:00+00:00"}}')
-    record("start-1")
-    assert list(read_progress()) == ["start-1", "start-5"] and "start-1" not in old.read_text()
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path / "of somebody else"))
-    assert read_progress() == {}
