@@ -24,13 +24,13 @@ BUDGETS = {
     "bench": 2408,
     "identification": 1649,
     "vision": 2150,
-    "course": 7831,  # ten more functions of the student's
+    "course": 7881,  # ten more functions of the student's
     "launcher": 540,
     "grading": 0,
     "publishing": 482,
     "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_062, 22_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 18_112, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
