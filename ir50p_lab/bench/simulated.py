@@ -14,7 +14,7 @@ from ir50p_lab.bench.runaway import UNDER, UNDER_ALARM, push, tip_height, watch_
 from ir50p_lab.bench.set_point import FARTHEST, NOBODY, NOISE, checked_push, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
 from ir50p_lab.controllers.base import check_reference, is_compiled
-from ir50p_lab.controllers.dispatch import control_step
+from ir50p_lab.controllers.law import law_step
 from ir50p_lab.errors import BenchError, InputError
 from ir50p_lab.jit import jit
 
@@ -25,9 +25,7 @@ _SINK = 3.0  # time after which an arm without drive lies still, s
 
 
 @jit()
-def _compiled_cycles(
-    theta, n, w, x, joint, slope, zero, low, high, queue, pwm, kind, p, s, watch, t, r, noise, steps, out
-):
+def _compiled_cycles(theta, n, w, x, joint, slope, zero, low, high, queue, pwm, p, s, watch, t, r, noise, steps, out):
     """The loop of `run`, `step` and `drive`, many cycles at once; out (cycles, 15): counts, q, u, truth q and qd.
 
     Returns the number of cycles done, and the alarm of `watch_step`; fewer than asked for with an alarm, or if in the
@@ -50,7 +48,7 @@ def _compiled_cycles(
             least, most = min(low[i], q[i] - NOISE) - 1e-9, max(high[i], q[i] + NOISE) + 1e-9
             if not (least <= r[k, 0, i] <= most and abs(r[k, 0, i] - q[i]) <= FARTHEST):
                 return k, 0
-        control_step(kind, p, s, t[k], q, r[k], command)
+        law_step(p, s, t[k], q, r[k], command)
         if not np.isfinite(command[0] + command[1] + command[2]):
             return k, 0
         for i in range(3):
@@ -186,7 +184,7 @@ class SimulatedBench(Bench):
         r, out = np.ascontiguousarray(rows, dtype=float), np.empty((len(t), 15))
         line = (np.array(self.calibration.slope), np.array(self.calibration.zero))
         fixed = (*self.plant.arrays, *line, *np.array(self._travel).T.copy())
-        law = (controller.kind, controller.parameters, controller.state)
+        law = (controller.parameters, controller.state)
         state, noise = (self._queue, self._pwm, *law, run.guard.watch), self.plant.noise(len(t))
         done, alarm = _compiled_cycles(*fixed, *state, t, r, noise, self._steps, out)
         rows = out[:done]

@@ -9,7 +9,6 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "adaptive": ["AdaptiveControl"],
         "base": ["Controller"],
         "computed_torque": ["ComputedTorque", "FeedForward", "GravityPD"],
         "continuous_pid": ["ContinuousPID"],

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from ir50p_lab.controllers import law
-from ir50p_lab.controllers.dispatch import control_step
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number, vector3, vectors3
 from ir50p_lab.signals.reference import per_joint
@@ -25,20 +24,18 @@ def three(place, what):
 class Controller:
     """A controller whose law is compiled once and runs in the notebook, the simulation, the sweep and the bench.
 
-    Subclasses set `kind` (its number in `dispatch`) and `sizes` of `parameters` and of the law's memory, `state`;
-    `rows` and `tables` are (name, place) of what stands in the parameters: three numbers, or (3, 20). `unit` is that
-    of the command ('N m' or 'PWM'). Python's `step` and the compiled loops call the same function on the same arrays:
-    the numbers are the same to the last bit.
+    The law is `law_step`; its numbers are in `parameters`, its memory in `state`. Subclasses set `rows` and `tables`,
+    (name, place) of what stands in the parameters: three numbers, or (3, 20). `unit` is that of the command ('N m' or
+    'PWM'). Python's `step` and the compiled loops call the same function on the same arrays: the numbers are the same
+    to the last bit.
     """
 
-    kind: int
-    sizes = law.N_PARAMETERS, law.N_STATES
     rows = tables = ()
     limit = three(law.LIMIT, "Limits of the command (3,), in its unit; infinite where there is none.")
 
     def __init__(self, unit, limit, period, filter_hz, position_filter_hz=None):
         self.unit = unit
-        self.parameters, self.state = (np.zeros(size) for size in self.sizes)
+        self.parameters, self.state = np.zeros(law.N_PARAMETERS), np.zeros(law.N_STATES)
         p = self.parameters
         p[law.LIMIT : law.LIMIT + 3] = limits(limit)
         p[law.PERIOD] = number("period", period, "> 0", unit="s")
@@ -69,7 +66,7 @@ class Controller:
         Returns: u (3,), in `unit`, after limits. Raises InputError if a number is not finite.
         """
         u = np.empty(3)
-        control_step(self.kind, self.parameters, self.state, float(t), _plain(measured), _plain_rows(reference), u)
+        law.law_step(self.parameters, self.state, float(t), _plain(measured), _plain_rows(reference), u)
         if not math.isfinite(u[0] + u[1] + u[2]):
             vectors3("measured q", measured)
             vectors3("reference", reference, unit="rad, rad/s, rad/s^2")

@@ -7,7 +7,6 @@ from ir50p_lab.controllers.base import Controller, gains, three
 class GainController(Controller):
     """A controller whose `parameters` begin with kp, ki and kd, three numbers each."""
 
-    kind = 1
     rows = ("kp", law.KP), ("ki", law.KI), ("kd", law.KD)
     takes_up = law.BUMP  # place in the state of what a change of gains must not do to u at once
     kp = three(law.KP, "Proportional gains (3,).")

@@ -84,7 +84,7 @@ class ClosedLoopRun:
         plant.numbers[LIMIT : LIMIT + 3] = 255.0
         if fs is not None:
             plant.numbers[FS : FS + 3], plant.numbers[QS : QS + 3], plant.numbers[DRY] = fs, qs, 1.0
-        law = self.controller.kind, self.controller.parameters, np.zeros_like(self.controller.state)
+        law = self.controller.parameters, np.zeros_like(self.controller.state)
         x, (q, qd, u) = np.r_[self.start, 0.0, 0.0, 0.0], np.empty((3, *self.q.shape))
         steps = max(1, round(self.period / step))
         h = self.period / steps

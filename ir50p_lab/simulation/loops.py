@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.controllers.dispatch import control_step
+from ir50p_lab.controllers.law import law_step
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.simulation.plant import LIMIT
@@ -10,10 +10,10 @@ from ir50p_lab.simulation.steps import acceleration, advance
 
 
 @jit(nogil=True)
-def sampled_loop(theta, n, kind, p, s, t, r, x, late, h, steps, q, qd, u):
+def sampled_loop(theta, n, p, s, t, r, x, late, h, steps, q, qd, u):
     """The loop of a computer: measure, compute, hold for `steps` steps of h; fills q, qd, u (n, 3).
 
-    theta, n: the plant; kind, p, s: the controller; t (n,) s; r (n, 3, 3) reference; x (6,) state, changed. Each
+    theta, n: the plant; p, s: the controller; t (n,) s; r (n, 3, 3) reference; x (6,) state, changed. Each
     command acts `late` periods after its sample, and nothing before the first.
     """
     measured, command, acting = np.empty(3), np.empty(3), np.zeros(3)
@@ -21,7 +21,7 @@ def sampled_loop(theta, n, kind, p, s, t, r, x, late, h, steps, q, qd, u):
         for i in range(3):
             measured[i] = x[i]
             q[k, i], qd[k, i] = x[i], x[3 + i]
-        control_step(kind, p, s, t[k], measured, r[k], command)
+        law_step(p, s, t[k], measured, r[k], command)
         for i in range(3):
             u[k, i] = min(max(command[i], -n[LIMIT + i]), n[LIMIT + i])
             acting[i] = u[k - late, i] if k >= late else 0.0

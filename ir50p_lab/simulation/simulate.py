@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 
 from ir50p_lab.controllers.base import Controller, is_compiled
+from ir50p_lab.controllers.pid import PID
 from ir50p_lab.errors import InputError, UnstableLoopWarning
 from ir50p_lab.inputs import number, vector3
 from ir50p_lab.signals.steps import hold
@@ -73,11 +74,9 @@ def simulate(
     elif controller is None or is_compiled(controller):
         from ir50p_lab.simulation.loops import sampled_loop
 
-        kind, p, s = 0, np.zeros(1), np.zeros(1)
-        if controller is not None:
-            controller.reset()
-            kind, p, s = controller.kind, controller.parameters, controller.state
-        sampled_loop(plant.theta, plant.numbers, kind, p, s, t, r, x, 0, step, steps, q, qd, u)
+        law = PID(kp=0) if controller is None else controller
+        law.reset()
+        sampled_loop(plant.theta, plant.numbers, law.parameters, law.state, t, r, x, 0, step, steps, q, qd, u)
     else:
         if hasattr(controller, "reset"):
             controller.reset()

@@ -52,7 +52,6 @@ MARKS = {
         "identification",
         "simulation",
         "bench/test_calibration.py",
-        "controllers/test_adaptive.py",
         "controllers/test_computed_torque.py",
         "controllers/test_identified_model.py",
         "course/camera/test_calibration_views.py",

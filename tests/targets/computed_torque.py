@@ -12,7 +12,7 @@ import warnings
 import numpy as np
 from scipy.optimize import brentq
 
-from ir50p_lab.controllers import AdaptiveControl, ComputedTorque, FeedForward, GravityPD
+from ir50p_lab.controllers import ComputedTorque, FeedForward, GravityPD
 from ir50p_lab.course.printed.control import PARAMETERS_2_1_2, LawWithError, error_2_19, inverse_dynamics_as_printed
 from ir50p_lab.course.torque.views import follow, naive_model, rms, thesis_pid
 from ir50p_lab.errors import InputError
@@ -118,9 +118,6 @@ def rows_bench(seeds):
             "computed torque, measured velocity in C and F": ComputedTorque(model, **TABLES_4_5, delay=0.02),
             "feed-forward and PD": FeedForward(model, kp=(289, 225, 270), kd=(40, 30, 30)),
             "gravity and PD": GravityPD(model, kp=(289, 225, 270), kd=(40, 30, 30)),
-            "adaptive, from this model": AdaptiveControl(
-                model, (3, 3, 3), (80, 80, 80), 0.02 * (np.abs(model.theta) + 1), dead_band=0.1
-            ),
             "computed torque, true parameters": ComputedTorque(
                 IR50P, **TABLES_4_5, limit_pwm=255, model_velocity="reference"
             ),

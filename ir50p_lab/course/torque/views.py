@@ -8,7 +8,6 @@ from ir50p_lab.controllers import PID
 from ir50p_lab.course.draw.style import JOINTS, SETPOINT, colour_map, joint_columns, subplots
 from ir50p_lab.course.fitting.views import kept_motion
 from ir50p_lab.identification import fit, process, regressor
-from ir50p_lab.simulation import simulate
 
 
 def rms(run, reference):
@@ -107,36 +106,3 @@ class TrackingView:
                 self._q[j][k].set_data(t, q[:, j])
                 self._e[j][k].set_data(t, error[:, j])
         return self.figure
-
-
-def learning_figure(law, arms, reference, seconds, *, column, joint, truth):
-    """An adaptive controller on two arms: its errors, and one parameter over time. Returns: LabFigure, belief (m, n).
-
-    Args: law: function () -> AdaptiveControl; arms: {label: Arm}; reference; seconds; column, joint: of the parameter
-    that is drawn; truth: {label: its true value}. Run in Python, so that its belief can be watched.
-    """
-    figure, left, right = subplots(9.6, 3.2, cols=2)
-    beliefs = []
-    for (label, arm), colour in zip(arms.items(), JOINTS, strict=False):
-        watched = _Watched(law(), joint, column)
-        run = simulate(arm, watched, reference, q0=reference(0.0)[0], duration=seconds)
-        left.plot(run.t, -1e3 * run.error[:, joint], color=colour, lw=1)
-        right.plot(run.t, watched.belief, color=colour, label=label)
-        right.axhline(truth[label], color=colour, ls="--", lw=1)
-        beliefs.append(watched.belief)
-    left.set(xlabel="time [s]  -  simulated", ylabel=f"q - q_ref, joint {joint + 1} [mrad]", title="It gets better")
-    right.set(xlabel="time [s]  -  simulated", ylabel=f"theta{column + 1} [PWM, SI]", title="because it learns")
-    right.legend(fontsize=8)
-    return figure, np.array(beliefs)
-
-
-class _Watched:
-    """A controller, and what it believes after each sample."""
-
-    def __init__(self, law, joint, column):
-        self.law, self.unit, self.limit, self.place, self.belief = law, law.unit, law.limit, (joint, column), []
-
-    def step(self, t, q, reference):
-        u = self.law.step(t, q, reference)
-        self.belief.append(self.law.theta[self.place])
-        return u
