@@ -24,13 +24,18 @@ def three(place, what):
 class Controller:
     """A controller whose law is compiled once and runs in the notebook, the simulation, the sweep and the bench.
 
-    The law is `law_step`; its numbers are in `parameters`, its memory in `state`. Subclasses set `rows` and `tables`,
-    (name, place) of what stands in the parameters: three numbers, or (3, 20). `unit` is that of the command ('N m' or
-    'PWM'). Python's `step` and the compiled loops call the same function on the same arrays: the numbers are the same
-    to the last bit.
+    The law is `law_step`; its numbers are in `parameters`, kp, ki and kd first, its memory in `state`. `rows` and
+    `tables` are (name, place) of what stands in the parameters: three numbers, or (3, 20). `unit` is that of the
+    command ('N m' or 'PWM'). Python's `step` and the compiled loops call the same function on the same arrays: the
+    numbers are the same to the last bit.
     """
 
-    rows = tables = ()
+    rows = ("kp", law.KP), ("ki", law.KI), ("kd", law.KD)
+    tables = ()
+    takes_up = law.BUMP  # place in the state of what a change of gains must not do to u at once
+    kp = three(law.KP, "Proportional gains (3,).")
+    ki = three(law.KI, "Integral gains (3,).")
+    kd = three(law.KD, "Derivative gains (3,).")
     limit = three(law.LIMIT, "Limits of the command (3,), in its unit; infinite where there is none.")
 
     def __init__(self, unit, limit, period, filter_hz, position_filter_hz=None):
@@ -46,6 +51,21 @@ class Controller:
     def reset(self):
         """Forget the past: integrals, filters and the last sample."""
         self.state[:] = 0.0
+
+    def set_gains(self, kp=None, ki=None, kd=None):
+        """Change gains in the middle of a run: the command does not jump. See `PID` and `ComputedTorque` for how.
+
+        What is left out stays. Raises InputError for gains that are negative or not finite (none is changed then).
+        """
+        p, s, given = self.parameters, self.state, {"kp": kp, "ki": ki, "kd": kd}
+        wanted = {place: gains(name, given[name]) for name, place in self.rows if given[name] is not None}
+        before = self.kp, self.kd
+        for place, value in wanted.items():
+            p[place : place + 3] = value
+        if s[law.STARTED]:
+            slope = s[law.SLOPE : law.SLOPE + 3]
+            ahead = s[law.ERROR : law.ERROR + 3] + p[law.DELAY] * slope
+            s[self.takes_up : self.takes_up + 3] += (before[0] - self.kp) * ahead + (before[1] - self.kd) * slope
 
     def header(self):
         """Lines for the head of a recording: dict of str; gains of joints 1 to 3, filters, and the model if any."""

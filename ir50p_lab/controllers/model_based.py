@@ -3,8 +3,7 @@
 import numpy as np
 
 from ir50p_lab.controllers import law
-from ir50p_lab.controllers.base import gains, unit_of
-from ir50p_lab.controllers.gains import GainController
+from ir50p_lab.controllers.base import Controller, gains, unit_of
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice, number
 from ir50p_lab.modelling.arm import Arm
@@ -15,7 +14,7 @@ LIMIT_PWM = 255.0
 _FADE = 0.3  # s in which the jump that a change of gains would make fades in
 
 
-class ModelController(GainController):
+class ModelController(Controller):
     """A controller with a model of the arm inside; see its subclasses for the laws.
 
     Attributes: theta (3, 20) the model in `unit`; kp, ki, kd (3,); limit (3,).

@@ -1,12 +1,11 @@
 """The independent-joint PID as it runs on a computer: sampled, filtered, limited, without windup or bumps (2.3)."""
 
 from ir50p_lab.controllers import law
-from ir50p_lab.controllers.base import gains, unit_of
-from ir50p_lab.controllers.gains import GainController
+from ir50p_lab.controllers.base import Controller, gains, unit_of
 from ir50p_lab.inputs import choice
 
 
-class PID(GainController):
+class PID(Controller):
     """Three independent PIDs, one per joint, sampled every `period` seconds.
 
         u = kp e + I + kd (qd_ref - v),  e = q_ref - q,  I <- I + ki e T       (2.1)-(2.3), with e = q_ref - q (2.4)
