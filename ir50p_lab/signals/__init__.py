@@ -11,7 +11,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
         "fourier": ["Fourier", "at_rest", "fourier"],
-        "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag", "low_pass_response"],
+        "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag"],
         "noise_and_lag": ["NoiseAndLag", "measured_lag", "noise_and_lag"],
         "quintic": ["quintic", "through"],
         "reference": ["Reference"],

@@ -9,7 +9,7 @@ from ir50p_lab.inputs import choice, first_not_finite, number, numbers, whole
 
 
 def low_pass(x, cutoff_hz, rate_hz, *, order=1, kind="causal"):
-    """Butterworth low pass of a record; gain 1/sqrt(2) at the cut-off (zero-phase: 1/2).
+    """Butterworth low pass of a record; gain 1/sqrt(2) at the cut-off (Figure 4.3; zero-phase: 1/2).
 
     kind="causal" uses the past only, as a loop must: it starts settled on the first sample and comes late by `lag`.
     kind="zero-phase" runs forward and backward over the finished record: no lag, double the order, not for a loop.
@@ -72,16 +72,6 @@ def low_pass_lag(cutoff_hz, rate_hz, *, order=1, at_hz=0.0):
     # - d phase/d w of sum c_k z^k is Re(sum k c_k z^k / sum c_k z^k)
     samples = np.real(above @ delayed / (above @ powers) - below @ delayed / (below @ powers)).sum(axis=0)
     return float(samples[0] / rate_hz) if np.ndim(at_hz) == 0 else samples / rate_hz
-
-
-def low_pass_response(cutoff_hz, rate_hz, f, *, order=1):
-    """What the causal filter does to the frequencies f (m,) Hz: complex (m,); its size is the gain (Figure 4.3).
-
-    Its angle is the phase, rad, < 0 is late. Args as in `low_pass`; f: below rate_hz/2.
-    """
-    from scipy.signal import freqz_sos
-
-    return freqz_sos(_sections(cutoff_hz, rate_hz, order), worN=_frequencies(f, rate_hz), fs=rate_hz)[1]
 
 
 def alias(f_hz, rate_hz):
