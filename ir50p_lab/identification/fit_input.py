@@ -6,11 +6,11 @@ from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import first_not_finite, numbers, vectors3
 
 
-def checked_data(Phi, y, name="Phi"):
-    """Phi (n, 3, 20), called `name`, and y (n, 3) as float arrays. Raises InputError."""
-    Phi, y = blocks(name, Phi), vectors3("y", y, unit="PWM or N m")
+def checked_data(Phi, y):
+    """Phi (n, 3, 20) and y (n, 3) as float arrays. Raises InputError."""
+    Phi, y = blocks("Phi", Phi), vectors3("y", y, unit="PWM or N m")
     if y.shape != Phi.shape[:2]:
-        raise InputError(f"y has shape {y.shape}, {name} {Phi.shape}; give y (n, 3) with a row for each of {name}")
+        raise InputError(f"y has shape {y.shape}, Phi {Phi.shape}; give y (n, 3) with a row for each of Phi")
     return Phi, y
 
 

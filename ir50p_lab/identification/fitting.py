@@ -1,48 +1,26 @@
-"""`fit`: the 20 parameters from a regressor and measured torque or PWM, by one of six estimators."""
+"""`fit`: the 20 parameters from a regressor and measured torque or PWM, free or within physical bounds."""
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import estimators
+from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.estimate import Estimate, impossible_values, indefinite_mass
 from ir50p_lab.identification.fit_input import checked_data
-from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, metres
+from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, FREE_OF_SIGN, NAMES, metres
 from ir50p_lab.identification.regression import Problem
-from ir50p_lab.inputs import choice, number, vectors3
+from ir50p_lab.inputs import choice
 
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 
 
-def fit(
-    Phi,
-    y,
-    *,
-    method="ls",
-    rows="joint",
-    columns="rigid",
-    l2=None,
-    weights=None,
-    use=None,
-    strength=1e-3,
-    instruments=None,
-    unit="PWM",
-):
+def fit(Phi, y, *, method="ls", rows="joint", columns="rigid", l2=None, use=None, unit="PWM"):
     """Parameters theta of y = Phi theta    (2.35), their standard errors, and which of them the data do not determine.
-
-    ========== =====================================================================================================
-    method     minimises, or solves
-    ========== =====================================================================================================
-    "ls"       sum of squares, by QR
-    "weighted" sum of weighted squares: weights (n, 3) or (3,), 1/variance, as 1/sigma^2 of a first fit
-    "huber"    squares up to 1.345 standard deviations, absolute value beyond: outliers pull little
-    "ridge"    squares plus strength |theta|^2, on columns scaled to length 1: less scatter, but biased towards 0
-    "bounded"  squares with inertial and friction terms >= 0 and offsets free
-    "iv"       instruments^T (y - Phi theta) = 0: no bias from noise in Phi; instruments (n, 3, 20), for example the
-               regressor of the reference, of a simulation, or of a repeated run
-    ========== =====================================================================================================
 
     Args:
         Phi: (n, 3, 20) as `regressor` returns; y: (n, 3), in `unit`.
+        method: "ls": the least sum of squares, by QR; "bounded": the same with inertial and friction terms >= 0 and
+            offsets free. Weights: multiply the rows of Phi and y by 1/sigma.
         rows: "joint": each joint its own parameters, right for motors of unequal gain. "shared": one theta for all,
             as the thesis: right for torque, or for equal motors (2.47 corrected).
         columns: "rigid" (all but theta7 and theta8, which no rigid body has), "thesis" (all 20).
@@ -52,38 +30,28 @@ def fit(
     Returns: Estimate. A column that is a combination of others in these data is left out, and named: its parameter is
     0 with stderr inf. What "bounded" leaves at a bound is named, its stderr is inf. Standard errors also hold for
     residuals that are correlated in time, as they are after a filter. They assume that Phi is free of noise; noise in
-    it biases all methods but "iv".
-    Raises: InputError on bad arguments; IdentificationError if there are too few samples, no motion, or an estimator
+    it biases both methods.
+    Raises: InputError on bad arguments; IdentificationError if there are too few samples, no motion, or the bounded fit
         cannot settle.
     """
     choice("unit", unit, ("PWM", "N m"))
-    choice("method", method, ("ls", "weighted", "huber", "ridge", "bounded", "iv"))
+    choice("method", method, ("ls", "bounded"))
     choice("rows", rows, ("joint", "shared"))
     choice("columns", columns, tuple(COLUMNS))
-    number("strength", strength, "> 0")
     if l2 is not None:
         metres("l2", l2)
     Phi, y = checked_data(Phi, y)
     used = np.ones(y.shape) if use is None else _checked_use(use, y)
-    share = used * np.sqrt(_checked_weights(weights, y)) if method == "weighted" else used
-    Z = checked_data(instruments, y, "instruments")[0] if method == "iv" else None
     theta, stderr, covariance = np.zeros((3, 20)), np.full((3, 20), np.nan), np.zeros((3, 20, 20))
     condition, freedom, lost, notes = np.zeros(3), np.zeros(3), [], []
     fitted = np.zeros((3, 20), dtype=bool)
     for joints in [slice(0, 3)] if rows == "shared" else [slice(j, j + 1) for j in range(3)]:
         who = "" if rows == "shared" else f"joint {joints.stop}: "
         here, ties, names = _acting(joints, COLUMNS[columns], l2)
-        A = _equations(Phi, share, joints, here) @ ties
-        problem = Problem(A, (y * share)[:, joints].ravel(), names, len(y), who=who)
+        A = _equations(Phi, used, joints, here) @ ties
+        problem = Problem(A, (y * used)[:, joints].ravel(), names, len(y), who=who)
         ties = ties[:, problem.kept]
-        if method == "iv":
-            x, spread = estimators.instrumental_variables(problem, _equations(Z, share, joints, here) @ ties)
-        elif method == "ridge":
-            x, spread = estimators.ridge(problem, strength)
-        elif method in ("huber", "bounded"):
-            x, spread = getattr(estimators, method)(problem)
-        else:
-            x, spread = problem.estimate(problem.Qty)
+        x, spread = _bounded(problem) if method == "bounded" else problem.estimate(problem.Qty)
         found = ties.any(axis=1)
         spread = ties @ spread @ ties.T
         count = used[:, joints].sum()
@@ -123,19 +91,29 @@ def _acting(joints, chosen, l2):
     return here, ties[:, kept], [NAMES[here[k]] for k in kept]
 
 
-def _equations(Phi, share, joints, here):
-    """The columns `here` of Phi (n, 3, 20) for k joints, sample by sample, times `share` (n, 3): (n k, p).
+def _equations(Phi, used, joints, here):
+    """The columns `here` of Phi (n, 3, 20) for k joints, sample by sample, times `used` (n, 3): (n k, p).
 
     Samples that are not used become rows of zeros: these tell nothing, and the others keep their place in time.
     """
-    return (Phi[:, joints, here] * share[:, joints, None]).reshape(-1, len(here))
+    return (Phi[:, joints, here] * used[:, joints, None]).reshape(-1, len(here))
 
 
-def _checked_weights(weights, y):
-    weights = vectors3("weights", weights, unit="1/variance of each measurement")
-    if weights.shape not in ((3,), y.shape) or (weights < 0).any():
-        raise InputError(f"weights {weights.shape}, least {weights.min():g}: give 1/variance, (3,) or (n, 3), all >= 0")
-    return weights
+def _bounded(problem):
+    """min |y - A x|^2 with inertial and friction terms >= 0, a convex problem, by scipy.optimize.lsq_linear on R.
+
+    Standard errors are those without bounds; of what is left at its bound the error is infinite.
+    """
+    low = np.where(np.isin(problem.names, FREE_OF_SIGN), -np.inf, 0.0)
+    size = np.linalg.norm(problem.Qty) or 1.0  # y is scaled to 1: the solver's tolerances then suit every unit
+    result = lsq_linear(problem.R, problem.Qty / size, (low, np.inf), method="bvls", tol=1e-14)
+    if not result.success:
+        raise IdentificationError(f"{problem.who}the bounded fit failed ({result.message}); use 'ls'")
+    said, at = at_bounds(problem.names, result.x, low, np.inf)
+    problem.notes += [problem.who + sentence for sentence in said]
+    problem.at_bound = np.flatnonzero(at)
+    _, covariance = problem.estimate(problem.R @ result.x * size)
+    return result.x * size / problem.scale, covariance  # not from `estimate`: a parameter at its bound is exactly 0
 
 
 def _checked_use(use, y):

@@ -34,7 +34,7 @@ def identify(
         recordings: a Recording (t, q, u), or a list of them: other motions of the same arm under the same load. One
             that contradicts the others is named, and the errors reach to what each says.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
-        method: "bounded", or another of `fit` that needs neither weights nor instruments.
+        method: of `fit`.
         cutoff_hz: Hz, above the frequencies of the motion; held: as in `process`; unit: of u.
         anyway: go on where the data are refused.
 

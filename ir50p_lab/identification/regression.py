@@ -125,21 +125,14 @@ class Problem:
         stands = "; ".join(f"{name} stands for {name} {w:+.4g} {lost}" for name, w in parts)
         return f"{self.who}{lost} cannot be told apart from {', '.join(name for name, _ in parts)}: {stands}"
 
-    def estimate(self, z, *, rows=None, residuals=None, derivative=None):
-        """Parameters of the columns kept, (k,), and their covariance (k, k), for z = R x with columns of length 1.
-
-        The estimate solves rows^T residuals = 0; `derivative` (k, k) is that of this sum by z. Default: least squares,
-        Q^T (y - Q z) = 0.
-        """
-        rows = self.Q if rows is None else rows
-        residuals = self.y - self.Q @ z if residuals is None else residuals
-        N, k = rows.shape
-        scores = (rows * residuals[:, None]).reshape(self.n, -1, k).sum(axis=1)
+    def estimate(self, z):
+        """Parameters of the columns kept, (k,), and their covariance (k, k), for z = R x with columns of length 1."""
+        residuals = self.y - self.Q @ z
+        N, k = self.Q.shape
+        scores = (self.Q * residuals[:, None]).reshape(self.n, -1, k).sum(axis=1)
         residuals = residuals.reshape(self.n, -1)
         spread = long_run_sum(scores, residuals)
         spread /= max(1 - k / (independent_samples(residuals) * N / self.n), 0.5)  # the fit uses k degrees of freedom
-        if derivative is not None:
-            spread = np.linalg.solve(derivative, np.linalg.solve(derivative, spread).T)
         back = self.R_inverse / self.scale[:, None]
         return back @ z, back @ spread @ back.T
 
