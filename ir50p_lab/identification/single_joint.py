@@ -49,7 +49,6 @@ _GRAVITY = 0.5, 0.01  # share of the residual that sin q, cos q explain, residua
 # share of the residual: (share, standard errors), either pair. A warning is given if it is longer than so many periods.
 _LATE = (0.9, 5.0), (0.99, 8.0)
 _TOLD = 0.75
-_SCALE = 0.05, 4.0  # share, standard errors: if u of a recording is larger or smaller than in the others by both
 
 _WIDENS = {  # fit with one effect more that may be there: the parameters whose errors it widens
     "late": _PHYSICAL,
@@ -164,7 +163,6 @@ def fit_joint(
     stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
     parameters = dict(zip(names, (unit * np.column_stack([found.left.x, stderr])).tolist(), strict=True))
     _check_fit(warned, found, others, "gravity" in terms)
-    _check_scales(warned, others)
     checks.check_clipped_drive(warned, found)
     _check_parameters(warned, parameters, found, lower, others)
     _check_timing(warned, lower, others, period)
@@ -314,7 +312,6 @@ def _others(found, lower):
         more["dead zone"] = found, np.sign(found.A @ found.left.x)
         more["gravity"] = found, found.columns[:, 1:3]
         for k in np.unique(found.of) if np.ptp(found.of) else ():
-            more[f"recording {k}"] = found, (found.of == k) * (found.A @ found.left.x)  # u of another size
             more[f"alone {k}"] = found, (found.of != k)[:, None] * found.A
     return {
         name: least_squares(np.column_stack([one.A, columns]), one.y, tolerance=_OWN_SHARE)
@@ -378,15 +375,6 @@ def _check_parameters(warned, parameters, found, lower, others):
         elif name in _PHYSICAL and depends[k]:
             half = f"{x * lower.left.x[k] / found.left.x[k]:.3g} at half of {found.cutoff_hz:.3g} Hz"
             warned.add(f"{said} depends on the cut-off: {value}, {half} (flexibility, backlash?)")
-
-
-def _check_scales(warned, others):
-    """A recording whose u is larger or smaller than the motion and the other recordings ask for."""
-    scales = {name: (one.x[-1], one.stderr[-1]) for name, one in others.items() if name.startswith("recording")}
-    odd = max(scales, key=lambda name: abs(scales[name][0]) / scales[name][1], default=None)
-    if odd and abs(scales[odd][0]) > max(_SCALE[0], _SCALE[1] * scales[odd][1]):
-        said = f"its u is {1 + scales[odd][0]:.3g} +- {scales[odd][1]:.2g} times what the others ask for"
-        warned.add(f"{odd} contradicts the others: {said} (a fresher battery, another gain?)")
 
 
 def _check_timing(warned, lower, others, period):
