@@ -9,7 +9,7 @@ from ir50p_lab.identification.columns import quantum_of, runs, sampling_period
 from ir50p_lab.identification.regression import least_squares
 
 FEWEST = 40  # samples: a shorter record is refused; ten for each of four parameters
-_TURNS = 6 * math.pi  # rad: if q spans more, it may be in degrees: joints seldom turn three times, often by 19 degrees
+TURNS = 6 * math.pi  # rad: if q spans more, it may be in degrees: joints seldom turn three times, often by 19 degrees
 _SLOW_CLOCK = 0.15  # s: if the sampling period is longer, t may be in milliseconds; nobody samples a joint so slowly
 # A stay is an angle that keeps one value for so many samples: its sensor may have hung, or come to its limit.
 _STAYS = 5
@@ -66,8 +66,11 @@ def at_bounds(names, x, low, high, room=0.0):
     return [f"at a bound: {', '.join(found)}; {beyond}"] if found else [], at
 
 
-def check_signals(warned, t, q, u):
-    """Check q (n,) and u (n,) at the times t (n,) before any model is fitted. Returns (n,) bool: where q is new."""
+def check_signals(warned, t, q, u, turns=TURNS):
+    """Check q (n,) and u (n,) at the times t (n,) before any model is fitted. Returns (n,) bool: where q is new.
+
+    turns: rad; a q that spans more may be in degrees.
+    """
     if len(t) < FEWEST:
         warned.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
     for name, x in (("q", q), ("u", u)):
@@ -80,7 +83,7 @@ def check_signals(warned, t, q, u):
         warned.refuse(f"q takes only {values} values: no motion can be seen; use a finer sensor")
     _hung(warned, np.delete(t, places), np.delete(q, places))
     _clipped(warned, np.delete(t, places), np.delete(q, places))
-    if np.ptp(q) > _TURNS:
+    if np.ptp(q) > turns:
         warned.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
     if np.diff(t).min() > _SLOW_CLOCK:
         warned.add(f"one sample every {sampling_period(t):.4g} s: is t in ms or microseconds? Give seconds")
@@ -197,6 +200,15 @@ def check_outliers(warned, name, t, x, remedy="leave these samples out"):
         k = places[0]
         warned.add(f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s, {x[k]:.4g}: {remedy}")
     return places
+
+
+def check_measured_speed(warned, t, q, qd):
+    """Warn of a qd (n,) that is not the rate of change of q (n,): another unit, or another joint."""
+    near = np.diff(t) < 1.5 * sampling_period(t)  # not across gaps
+    rate, speed = (np.diff(q) / np.diff(t))[near], ((qd[1:] + qd[:-1]) / 2)[near]
+    factor = float(rate @ speed / max(speed @ speed, 1e-300))
+    if not 0.9 < factor < 1.1:
+        warned.add(f"the angle changes at {factor:.3g} times qd: is qd in rad/s and q in rad, of the same joint?")
 
 
 def check_clipped_drive(warned, found):

@@ -89,7 +89,9 @@ class JointFit:
     warnings: tuple
 
 
-def fit_joint(t, q=None, u=None, *, terms=TERMS[:4], cutoff_hz=None, delay=0.0, held=None, anyway=False):
+def fit_joint(
+    t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, held=None, slow=None, anyway=False
+):
     """Inertia, viscous and Coulomb friction and offset of one joint from a recording of it    (2.48, one joint)
 
         u = inertia qdd + viscous qd + coulomb sgn(qd) + offset
@@ -103,15 +105,17 @@ def fit_joint(t, q=None, u=None, *, terms=TERMS[:4], cutoff_hz=None, delay=0.0, 
 
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings or
-            of tuples (t, q, u): each is fitted and compared with the others, then all are fitted together. One that
-            contradicts the others is named, and the errors reach to what each says.
-        q: (n,) rad; of a wheel of which only the speed was measured, the integral. u: (n,), torque, current or command,
-            any unit. Arrays, masked arrays, pandas Series.
+            of tuples (t, q, u) or (t, q, u, qd): each is fitted and compared with the others, then all are fitted
+            together. One that contradicts the others is named, and the errors reach to what each says.
+        q: (n,) rad; None for a wheel of which only qd was measured: its integral is taken. u: (n,), torque, current or
+            command, any unit. Arrays, masked arrays, pandas Series.
+        qd: (n,) rad/s, if it was measured too: then q is not differentiated.
         terms: of "inertia", "viscous", "coulomb", "offset", "gravity".
-        cutoff_hz: of the low pass. (A table of speeds and torques needs none: `least_squares`.)
+        cutoff_hz: of the low pass; inf: none, the plain least squares of a friction sweep (with qd, without inertia).
         delay: s from a sample to the moment its u acts.
         held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: what
             explains the data better.
+        slow: rad/s; slower samples are left out, by default those below a tenth of the rms speed.
         anyway: go on where the data are refused; the reason is then in `warnings`.
 
     Returns: JointFit.
@@ -125,26 +129,28 @@ def fit_joint(t, q=None, u=None, *, terms=TERMS[:4], cutoff_hz=None, delay=0.0, 
         raise InputError(f"terms = {terms!r}: give some of {', '.join(TERMS)}")
     names = [name for name in _COLUMNS if name.split("_")[0] in terms]
     warned = checks.Warnings(choice("anyway", anyway, (True, False)))
-    recordings, runs = _recordings(t, q, u), []
+    recordings, runs = _recordings(t, q, u, qd), []
     for k, one in enumerate(recordings, 1):
         warned.who = f"recording {k}: " if len(recordings) > 1 else ""
         runs += _runs(warned, one, delay, k)
     warned.who = ""
+    if len({run.angles.shape[1] for run in runs}) > 1:
+        raise InputError("qd in some of the recordings only: give it in all, or in none")
     unit = float(np.std(np.concatenate([run.u for run in runs])))  # for columns of a size, whatever u counts in
     if len(recordings) > 1:
-        options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "anyway": anyway}
+        options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
         least = {name: 0.0 if name in _PHYSICAL else 0.05 * unit for name in names}
         checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), least)
     for run in runs:
         run.u = run.u / unit
     band = _band(runs)
-    if band.speed < _DROWNED * band.speed_noise or band.speed == 0:
+    if cutoff_hz != math.inf and (band.speed < _DROWNED * band.speed_noise or band.speed == 0):
         said = f"not exciting: the joint moves at {band.speed:.2g} rad/s, noise alone {band.speed_noise:.2g} rad/s"
         warned.refuse(f"{said}; move faster")
     if cutoff_hz is None:
         cutoff_hz = min(_ABOVE * band.motion_hz, band.clean_hz)
-    number("cutoff_hz", cutoff_hz, "> 0", unit="Hz")
-    slow = _SLOW * band.speed
+    number("cutoff_hz", cutoff_hz, "> 0 or inf", unit="Hz")
+    slow = _SLOW * band.speed if slow is None else number("slow", slow, ">= 0", unit="rad/s")
     pair = _fits(runs, names, cutoff_hz, band.clean_hz, slow)
     if not pair:
         raise IdentificationError(f"fewer than {checks.FEWEST // 2} independent samples are in motion: record more")
@@ -172,29 +178,43 @@ def fit_joint(t, q=None, u=None, *, terms=TERMS[:4], cutoff_hz=None, delay=0.0, 
     )
 
 
-def _recordings(t, q, u):
-    """The arguments of `fit_joint` as a list of tuples (t, q, u) or (recording,)."""
+def _recordings(t, q, u, qd):
+    """The arguments of `fit_joint` as a list of tuples (t, q, u, qd) or shorter."""
     if isinstance(t, (list, tuple)) and len(t) and q is None and u is None:
+        if qd is not None:
+            raise InputError("qd= beside several recordings: give each as (t, q, u, qd)")
         return [one if isinstance(one, (list, tuple)) else (one,) for one in t]
-    return [(t, q, u)]
+    return [(t, q, u, qd)]
 
 
 def _runs(warned, recording, delay, number):
-    """Evenly sampled runs without a gap: rate, Hz; q (n,); u (n, 2): held, measured; of: number of the recording."""
-    t, q, u = columns_of(*recording[:3])
-    if q.shape[1] != 1:
+    """Evenly sampled runs without a gap: rate, Hz; angles (n, 1 or 2): q, qd if given; u (n, 2): held, measured; of:
+    the number of the recording.
+    """
+    t, q, u, qd = (*recording, None, None, None)[:4]
+    wheel = q is None and qd is not None  # of which only the speed was measured: its integral will do
+    if wheel:
+        t, qd, u = columns_of(t, qd, u)
+        q = np.cumsum(qd * np.gradient(t)[:, None], axis=0)
+    if qd is not None:
+        q, u = np.ma.column_stack([q, qd]), np.ma.column_stack([u, u])
+    t, q, u = columns_of(t, q, u)
+    if q.shape[1] != 1 + (qd is not None):
         raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
-    new = checks.check_signals(warned, t, q[:, 0], u[:, 0])
+    new = checks.check_signals(warned, t, q[:, 0], u[:, 0], math.inf if wheel else checks.TURNS)
+    if qd is not None:
+        checks.check_outliers(warned, "qd", t, q[:, 1])
+        checks.check_measured_speed(warned, t, *q.T)
     options = {"cutoff_hz": None, "trim": 0.0, "delay": delay}
     held, measured = (process(t[new], q[new], u[new], held=held, **options) for held in (True, False))
     edges = np.flatnonzero(np.diff(held.segment)) + 1
     drives = np.column_stack([held.u[:, 0], measured.u[:, 0]])
-    pairs = zip(np.split(held.q[:, 0], edges), np.split(drives, edges), strict=True)
-    return [SimpleNamespace(rate=held.rate_hz, q=q, u=drive, of=number) for q, drive in pairs]
+    pairs = zip(np.split(held.q, edges), np.split(drives, edges), strict=True)
+    return [SimpleNamespace(rate=held.rate_hz, angles=angles, u=drive, of=number) for angles, drive in pairs]
 
 
 def _band(runs):
-    """Tell motion from noise in the spectrum of the angle of the run that moves most.
+    """Tell motion from noise in the spectrum of the angle (of qd, if measured) of the run that moves most.
 
     Noise is taken as white, as strong as it is between a quarter and half of the sampling rate. A line no higher than
     the highest one there is not motion: the steps of a coarse angle make such lines. Returns a namespace: motion_hz;
@@ -202,13 +222,13 @@ def _band(runs):
     """
     from scipy.signal import welch
 
-    longest = max(runs, key=lambda run: len(run.u) * np.var(run.q))
-    x = longest.q
+    longest = max(runs, key=lambda run: len(run.u) * np.var(run.angles[:, -1]))
+    x = longest.angles[:, -1]
     f, power = (column[1:] for column in welch(x, longest.rate, nperseg=min(len(x), max(256, len(x) // 6))))
     rest = power[f >= longest.rate / 4]
     floor = np.median(rest) / math.log(2)  # a spectral line of noise is chi-squared with 2 degrees of freedom
     above = np.where(power > max(3 * floor, rest.max(), _SAW * quantum_of(x) ** 2 / f[0]), power - floor, 0.0)
-    to_speed = (2 * np.pi * f) ** 2
+    to_speed = (2 * np.pi * f) ** 2 if longest.angles.shape[1] == 1 else np.ones_like(f)
     speed, speed_noise = np.cumsum(to_speed * above), np.cumsum(to_speed * floor)
     noise = np.cumsum(f**2 * to_speed * floor) <= _NOISE * np.cumsum(f**2 * to_speed * above)
     highest = int(np.searchsorted(f, _HIGHEST * longest.rate)) - 1
@@ -219,14 +239,16 @@ def _band(runs):
 
 
 def _smooth(x, cutoff_hz, rate):
-    return low_pass(x, cutoff_hz, rate, order=3, kind="zero-phase")
+    return x if math.isinf(cutoff_hz) else low_pass(x, cutoff_hz, rate, order=3, kind="zero-phase")
 
 
 def _derivatives(run, cutoff_hz):
     """qd, qdd (n,) after the low pass, from five points: three would err by 1 % at 20 samples a period."""
-    x = _smooth(run.q, cutoff_hz, run.rate)
+    x = _smooth(run.angles[:, -1], cutoff_hz, run.rate)
     x = np.pad(x, 2, mode="reflect", reflect_type="odd")
     first = np.convolve(x, (-1, 8, 0, -8, 1), "valid") * run.rate / 12
+    if run.angles.shape[1] == 2:
+        return x[2:-2], first
     return first, np.convolve(x, (-1, 16, -30, 16, -1), "valid") * run.rate**2 / 12
 
 
@@ -248,7 +270,7 @@ def _table(runs, cutoff_hz, sign_hz, slow):
             continue
         v, a = _derivatives(run, cutoff_hz)
         turn = np.sign(_derivatives(run, max(sign_hz, cutoff_hz))[0])
-        q, u = run.q, run.u[:, 0]
+        q, u = run.angles[:, 0], run.u[:, 0]
         plain = np.column_stack([turn, np.sin(q), np.cos(q), np.abs(v) > slow, u < low, u > high, run.u])
         plain = _smooth(plain, cutoff_hz, run.rate)
         slopes, snap = np.gradient(plain[:, 6:], axis=0) * run.rate, np.gradient(np.gradient(a)) * run.rate**2

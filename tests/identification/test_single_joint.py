@@ -301,14 +301,47 @@ def test_a_joint_that_friction_stops_at_its_turning_points_was_not_clipped(count
         assert off < 3 * getattr(found, f"{name}_stderr") + 0.02 * true or found.warnings, name
 
 
+def fast_sweep(rate=20.0, f=3.0):
+    """Motion with less than eight samples a period; its rates; friction alone."""
+    t = np.arange(1200) / rate
+    w = 2 * np.pi * f * np.array([1.0, 0.37])
+    q, qd = np.sin(np.outer(t, w)) @ (0.8, 0.3), np.cos(np.outer(t, w)) @ (0.8 * w[0], 0.3 * w[1])
+    return t, q, 1.2 * qd + 0.6 * np.sign(qd) + 0.01 * np.random.default_rng(0).normal(size=len(t)), qd
+
+
+def test_a_measured_speed_is_believed_at_few_samples_a_period_and_in_several_recordings():
+    t, q, u, qd = fast_sweep()
+    terms = ("viscous", "coulomb")
+    one = fit_joint(t, q, u, qd=qd, terms=terms)
+    two = fit_joint([(t, q, u, qd), (t, q, u, qd)], terms=terms)
+    for found in (one, two):
+        assert found.viscous == pytest.approx(1.2, abs=0.01) and not found.warnings
+    assert any("times qd" in text for text in fit_joint(t, q, u, qd=2 * qd, terms=terms).warnings)
+    with pytest.raises(InputError, match=r"\(t, q, u, qd\)"):
+        fit_joint([(t, q, u)], qd=qd)
+    with pytest.raises(InputError, match="qd in some of the recordings only"):
+        fit_joint([(t, q, u), (t, q, u, qd)])
+
+
+def test_measured_speed_is_used_and_its_unit_is_checked():
+    rng = np.random.default_rng(0)
+    t, q, v, a = sines(rng, 500, 15, 0.8)
+    u = 0.7 * a + 2 * v + 0.8 * np.sign(v) + 0.1 + rng.normal(0, 0.02, len(t))
+    coarse = np.round(q / 0.02) * 0.02  # too coarse to be differentiated twice
+    found = fit_joint(t, coarse, u, qd=v, cutoff_hz=10.0, held=False)
+    assert (found.inertia, found.viscous, found.coulomb) == pytest.approx((0.7, 2, 0.8), rel=0.04)
+    assert "times qd" in " ".join(fit_joint(t, q, u, qd=v * 9.549).warnings)  # rev/min
+
+
 def test_a_wheel_of_which_only_the_speed_was_measured():
-    """Its integral is an angle."""
     rng = np.random.default_rng(1)
-    t, _, v, a = sines(rng, 100, 20, 2.0)
+    t, _, v, a = sines(rng, 100, 20, 6.0)
     u = 0.02 * a + 0.01 * v + 0.05 * np.sign(v) + rng.normal(0, 0.002, len(t))
-    found = fit_joint(t, np.cumsum(v) * 0.01, u)
-    for name, true in zip(NAMES, (0.02, 0.01, 0.05), strict=False):
-        assert abs(getattr(found, name) - true) < 0.02 * true + 3 * getattr(found, f"{name}_stderr"), name
+    for found in (fit_joint(t, u=u, qd=v), fit_joint([(t, None, u, v)])):
+        assert (found.inertia, found.viscous, found.coulomb) == pytest.approx((0.02, 0.01, 0.05), rel=0.02)
+        assert found.warnings == ()
+    lost = np.where(np.arange(len(t)) == 700, 300.0, v)
+    assert "qd has 1 outlier" in " ".join(fit_joint(t, u=u, qd=lost).warnings)
 
 
 def at_uneven_times(clock, seed):
