@@ -22,7 +22,7 @@ BUDGETS = {
     "controllers": 349,
     "simulation": 620,
     "bench": 2406,
-    "identification": 1548,
+    "identification": 1572,
     "vision": 2150,
     "course": 7859,  # ten more functions of the student's
     "launcher": 540,
@@ -30,7 +30,7 @@ BUDGETS = {
     "publishing": 482,
     "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 17_831, 22_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 17_855, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
