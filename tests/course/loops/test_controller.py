@@ -21,7 +21,8 @@ def home(tmp_path, monkeypatch):
     monkeypatch.setenv("IR50P_HOME", str(tmp_path))
     catalogue._at.clear()
     my_robot._said.clear()
-    return tmp_path
+    yield tmp_path
+    catalogue._at.clear()  # a test of another file, in this process, works on no stage
 
 
 def edited(stage, *edits):
