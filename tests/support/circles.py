@@ -16,6 +16,8 @@ WRONG = [
     ("(J, v)", "(J, np.zeros(3))", "its speeds are not the change of its angles"),
     ("centre + radius", "ball + radius", "rad from where the way ends"),
     ("np.sin(turned), 0])\n    q", "0, 0])\n    q", "from the centre"),
+    ("centre + radius", "centre + 9 * radius", "`reach` gives None"),
+    ("    place", "    turned, rate = 2 * turned, 2 * rate\n    place", "once round was asked for"),
 ]
 
 

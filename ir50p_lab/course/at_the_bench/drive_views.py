@@ -12,7 +12,7 @@ from ir50p_lab.course.draw.style import COLOURS, SETPOINT, origin, subplots
 from ir50p_lab.course.lab_book.results import arm_that_answers
 from ir50p_lab.course.robot import my_robot
 from ir50p_lab.course.robot.parts import parts
-from ir50p_lab.errors import BenchError, BoardLostError
+from ir50p_lab.errors import BenchError, BoardLostError, InputError
 
 _COLOURS = COLOURS["blue"], COLOURS["orange"], COLOURS["green"]
 _MOVED, _LATE = 1e-3, 0.02  # m the tip may be beside its circle; rad/s the speed from the change of its angles
@@ -22,14 +22,19 @@ def circle_in_use(circle, arm, centre, radius, first, seconds):
     """The student's circle(t), or the course's while it is none; a line says which, and what is wrong with it.
 
     Args: circle: f(t) -> (3, 3), rows q, qd, qdd; centre: (3,) m; radius: m; first: (3,) rad, where it has to begin;
-    seconds: of the round.
+    seconds: of the round. Raises InputError for a circle that the tip cannot follow.
     """
+    limits, turns = parts(arm).limits, np.linspace(0, 2 * np.pi, 100)
+    places = centre + radius * np.column_stack([np.cos(turns), np.sin(turns), 0 * turns])
+    if missing := sum(my_robot.reach(p, arm.l, np.zeros(3), limits) is None for p in places):
+        remedy = "make it smaller, or move its centre"
+        raise InputError(f"a circle of radius {radius} m: {missing} of its 100 places have no pose; {remedy}")
 
     def course(t):
         turned, rate, _ = my_robot.quintic(0.0, 2 * np.pi, seconds, t)
         out, along = np.array([[np.cos(turned), np.sin(turned), 0], [-np.sin(turned), np.cos(turned), 0]])
         p = centre + radius * out
-        q = my_robot.reach(p, arm.l, first, parts(arm).limits)
+        q = my_robot.reach(p, arm.l, first, limits)
         J = my_robot.jacobian(my_robot.frames(q, arm.l), 3, p)[:3]
         return np.array([q, np.linalg.solve(J, radius * rate * along), np.zeros(3)])
 
@@ -37,6 +42,8 @@ def circle_in_use(circle, arm, centre, radius, first, seconds):
         wrong = _wrong_with(lambda t: array_like(np.zeros((3, 3)), circle, t), arm, centre, radius, first, seconds)
     except Failed as failed:
         wrong = "it gives no angles yet" if "ellipsis" in failed.args[0] else failed.args[0]
+        if "None" in wrong:
+            wrong = "something in it is None; `reach` gives None where there is no pose: is the place on the circle?"
     print(f"circle: the course's. Of yours: {wrong}" if wrong else "circle: yours")
     return course if wrong else circle
 
@@ -59,6 +66,8 @@ def _wrong_with(circle, arm, centre, radius, first, seconds):
             return f"at t = {t:g} s it asks for {speed:.2f} rad/s of an arm that stands"
     if np.abs(circle(seconds)[0] - first).max() > _MOVED:
         return f"after {seconds:g} s it is not back"
+    if my_robot.forward_kinematics(circle(seconds / 2)[0], arm.l)[0] > centre[0]:
+        return "after half of the time it is not on the far side: once round was asked for"
     return ""
 
 

@@ -56,6 +56,8 @@ WRONG = {
     "degrees": (lambda t: circle(t, unit=180 / np.pi), "stands .* rad from where the way ends"),
     "radius": (lambda t: circle(t, radius=0.05), "from where the way ends"),
     "half a round": (lambda t: circle(t, phase=0.5), "it is not back"),
+    "twice round": (lambda t: circle(t, phase=2), "once round was asked for"),
+    "no pose": (lambda t: circle(t, radius=0.5), "`reach` gives None where there is no pose"),
     "memory": (remembers, "two answers: it remembers"),
     "rate forgotten": (rate_forgotten, "not the change of its angles"),
     "twice as fast": (lambda t: circle(t, speed=2), "not the change of its angles"),
@@ -79,6 +81,11 @@ def test_a_wrong_circle_is_answered_and_the_course_s_stands_in(wrong, capsys):
 def test_a_right_circle_is_used(right, capsys):
     assert views.circle_in_use(right, IR50P, CENTRE, RADIUS, FIRST, SECONDS) is right
     assert "circle: yours" in capsys.readouterr().out
+
+
+def test_a_circle_that_no_arm_follows_is_refused_before_it_is_drawn():
+    with pytest.raises(InputError, match="radius 0.2 m: 39 of its 100 places have no pose; make it smaller"):
+        views.circle_in_use(circle, IR50P, CENTRE, 0.2, None, SECONDS)
 
 
 def broken(fault):
