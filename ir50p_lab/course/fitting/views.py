@@ -33,30 +33,6 @@ def two_copies(arm, controller, reference, seconds=8):
         return runs[0], bench.recording, runs[1]
 
 
-def open_loop_figure(closed, again):
-    """A run in closed loop, and the same commands sent blindly to another copy of the arm. Returns: LabFigure.
-
-    Args: closed, again: Recordings of the same length.
-    """
-    figure = new_figure(9.6, 3.0, cols=3)
-    for joint, ax in enumerate(figure.axes):
-        ax.plot(closed.t, closed.q[:, joint], color=COLOURS["blue"], label="with feedback")
-        ax.plot(again.t, again.q[:, joint], color=COLOURS["orange"], label="the same counts, blindly")
-        off = abs(again.q[-1, joint] - closed.q[-1, joint])
-        ax.set(xlabel="time [s]  -  simulated", title=f"joint {joint + 1}: {off:.2f} rad apart at the end")
-    figure.axes[0].set_ylabel("angle [rad]")
-    figure.axes[0].legend(fontsize=8)
-    return figure
-
-
-def spoilt(recording, n=6000):
-    """t, q and u of joint 1 as a careless file holds them: halves swapped, numbers missing, degrees."""
-    t, q, u = recording.t[:n], np.degrees(recording.q[:n, 0]), recording.u[:n, 0]
-    q[n // 3 : n // 3 + 80] = np.nan
-    order = np.r_[n // 2 : n, : n // 2]
-    return t[order], q[order], u[order]
-
-
 class FeedbackLoop:
     """The steady speed of a joint under a P controller and a load that nobody measures.
 

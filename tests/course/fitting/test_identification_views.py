@@ -66,7 +66,6 @@ def test_two_copies():
     closed, blind, other = views.two_copies(IR50P, PID(**PID_TABLES), reference, 4)
     np.testing.assert_array_equal(closed.u[:300], blind.u[:300])
     assert np.abs(blind.q[-1] - closed.q[-1]).max() > np.abs(other.q[-1] - closed.q[-1]).max()
-    assert "apart" in views.open_loop_figure(closed, blind).axes[1].get_title()
 
 
 # ---- arms
@@ -159,7 +158,9 @@ def test_forgetting_follows_a_payload(records, excitation):
 
 
 def test_spoilt_data_can_be_repaired(records):
-    t, q, u = views.spoilt(records[0], n=3000)
+    t, q, u = records[0].t[:3000], np.degrees(records[0].q[:3000, 0]), records[0].u[:3000, 0]
+    q[1000:1080] = np.nan
+    t, q, u = (np.roll(column, 1500) for column in (t, q, u))
     for _ in range(2):
         with pytest.raises(InputError):
             fit_joint(t, q, u)
