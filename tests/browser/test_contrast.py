@@ -6,8 +6,8 @@ from conftest import running_lab
 from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL
 
 CELLS = [
-    "from ir50p_lab.course import check, predict, progress\n"
-    "check('start-1', 7)\ncheck('rot_z', lambda angle: None)\npredict('start.fall', 'long', 's')\nprogress()",
+    "from ir50p_lab.course import check, my_robot, predict\n"
+    "check('start-1', 7)\ncheck('rot_z', lambda angle: None)\npredict('start.fall', 'long', 's')\nmy_robot.progress()",
     "from ir50p_lab.course.draw.scope import Scope\nfrom ir50p_lab.course.draw.strip_chart import StripChart\n"
     "chart = StripChart(list('abcdef'), duration=1, ylim=(0, 1), ylabel='x [m]', title='six curves')\n"
     "display(chart, Scope(badge='simulated'))\n"

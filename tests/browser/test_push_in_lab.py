@@ -15,7 +15,7 @@ MIDDLE_OF_LINK_2 = "view.joints[1].map((v, i) => (v + view.joints[2][i]) / 2)"
 EVENTS = 3  # number of the cell that prints those of the recording
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def pushed(browser, tmp_path_factory):
     """The page with the arm, followed live."""
     home = tmp_path_factory.mktemp("push")
@@ -63,7 +63,7 @@ def has_let_go(page):
     assert arrow(page) is None and "you push" not in page.locator(".la-note").first.text_content()
 
 
-def test_the_mouse_pushes_the_tip_with_ten_newtons_at_most(pushed):
+def mouse_pushes_the_tip_with_ten_newtons_at_most(pushed):
     before, (x, y) = tip(pushed), place(pushed, "view.tipAt")
     pushed.mouse.move(x, y)
     pushed.mouse.down()
@@ -78,7 +78,7 @@ def test_the_mouse_pushes_the_tip_with_ten_newtons_at_most(pushed):
     pushed.wait_for_function(f"(z) => {THE_VIEW}.tipAt[2] < z", arg=before[2] + 0.05, timeout=60_000)
 
 
-def test_shift_and_arrows_push_the_tip_newton_by_newton(pushed):
+def shift_and_arrows_push_the_tip_newton_by_newton(pushed):
     before = tip(pushed)
     pushed.locator(".la-stage > canvas").first.focus()
     pushed.keyboard.down("Shift")
@@ -91,7 +91,7 @@ def test_shift_and_arrows_push_the_tip_newton_by_newton(pushed):
     assert "with Shift they push the arm" in pushed.locator(".la canvas").first.get_attribute("aria-label")
 
 
-def test_a_finger_pushes_the_upper_arm(pushed):
+def finger_pushes_the_upper_arm(pushed):
     touch, (x, y) = pushed.context.new_cdp_session(pushed), place(pushed, MIDDLE_OF_LINK_2)
     for kind, lift in [("touchStart", 0), *(("touchMove", 20 * k) for k in range(1, 5))]:
         touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y - lift}]})
@@ -100,9 +100,17 @@ def test_a_finger_pushes_the_upper_arm(pushed):
     has_let_go(pushed)
 
 
-def test_the_recording_says_it(pushed):
+def recording_says_it(pushed):
     said = run(pushed, EVENTS)
     assert "a hand pushes at link 3 with 10.0 N" in said and "a hand pushes at link 2" in said
     assert "the hand has let go" in said
     run(pushed, EVENTS, "run.stop()")
     pushed.wait_for_function(f"() => !{THE_VIEW}.mostPush && !{THE_VIEW}.isLive", timeout=60_000)  # played from now on
+
+
+def test_a_hand_pushes(pushed):
+    """One test, for each step finds the arm as the step before has left it."""
+    mouse_pushes_the_tip_with_ten_newtons_at_most(pushed)
+    shift_and_arrows_push_the_tip_newton_by_newton(pushed)
+    finger_pushes_the_upper_arm(pushed)
+    recording_says_it(pushed)
