@@ -19,12 +19,12 @@ CONNECT = "views.connect().close()"
 PATIENT = "import ir50p_lab.bench.run as cycles\ncycles.LONGEST_PAUSE = 60  # s: a slow machine ends no run\n"
 
 
-def draw(page, number, cell):
+def draw(page, number, cell, claims):
     """As it stands, wrongly in each way, then rightly."""
     assert "circle: the course's. Of yours: it gives no angles yet" in run(page, number, cell)
     for old, new, words in circles.WRONG:
-        said = run(page, number, circles.written(cell, old, new))
-        assert "circle: the course's. Of yours: " in said and words in said, said
+        said = run(page, number, circles.judged(cell, claims, old, new))
+        assert words in said, said
     assert "circle: yours" in run(page, number, circles.written(cell))
 
 
@@ -58,9 +58,10 @@ def push(page):
 def test_a_student_drives(browser, tmp_path):
     said = {}
     with opened(browser, NOTEBOOK, tmp_path) as page:
-        for number, source in code_cells(NOTEBOOK, first=f"{PLUG_IN}emulated_bench.allow_the_cable(board)\n"):
+        cells = list(code_cells(NOTEBOOK, first=f"{PLUG_IN}emulated_bench.allow_the_cable(board)\n"))
+        for k, (number, source) in enumerate(cells):
             if source.startswith("def circle("):
-                draw(page, number, source)
+                draw(page, number, source, [claims for _, claims in cells[k + 1 : k + 4]])
                 continue
             if "live_panel(" in source:
                 source = PATIENT + source.replace("connect(q0=", 'connect("simulated", q0=')

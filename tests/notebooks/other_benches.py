@@ -85,7 +85,7 @@ def test_a_student_drives_the_board_and_pulls_its_cable(tmp_path):
     sources = [cell.source for cell in notebook.cells[:last] if cell.cell_type == "code"]
     (asked,) = [k for k, source in enumerate(sources) if source.startswith("def circle")]
     sources[asked : asked + 1] = [
-        circles.written(sources[asked], *circles.WRONG[0][:2]),
+        circles.judged(sources[asked], sources[asked + 1 : asked + 4], *circles.WRONG[0][:2]),
         circles.written(sources[asked]),
     ]
     pulled = next(k for k, source in enumerate(sources) if 'broken("cable")' in source)

@@ -1,6 +1,7 @@
 """A student's circle(t) in notebook 11: as it is right, and as it goes wrong."""
 
 import re
+import textwrap
 
 _NO_CIRCLE_YET = re.compile(r"^    \.\.\..*\n    return \.\.\.\n", re.M)
 _RIGHT = """\
@@ -10,14 +11,14 @@ _RIGHT = """\
     v = radius * rate * np.array([-np.sin(turned), np.cos(turned), 0])
     return np.array([q, np.linalg.solve(J, v), np.zeros(3)])
 """
-#: What in it, by what, words of what is said.
+#: What in it, by what, words of what is said by its own cell or by the claims after it.
 WRONG = [
-    ("v = radius * rate", "v = rate", "its speeds are not the change of its angles"),
-    ("(J, v)", "(J, np.zeros(3))", "its speeds are not the change of its angles"),
-    ("centre + radius", "ball + radius", "rad from where the way ends"),
-    ("np.sin(turned), 0])\n    q", "0, 0])\n    q", "from the centre"),
+    ("v = radius * rate", "v = rate", "does not hold: angles change as speeds say"),
+    ("(J, v)", "(J, np.zeros(3))", "does not hold: angles change as speeds say"),
+    ("centre + radius", "ball + radius", "does not hold: the tip is on the circle; outwards and upwards"),
+    ("np.sin(turned), 0])\n    q", "0, 0])\n    q", "does not hold: the tip is on the circle; outwards and upwards"),
     ("centre + radius", "centre + 9 * radius", "`reach` gives None"),
-    ("    place", "    turned, rate = 2 * turned, 2 * rate\n    place", "once round was asked for"),
+    ("    place", "    turned, rate = 2 * turned, 2 * rate\n    place", "does not hold: rounds at half time"),
 ]
 
 
@@ -25,3 +26,9 @@ def written(cell, old="", new=""):
     """The cell that asks for it, with the right lines in place of the dots, or with a mistake in them."""
     assert len(_NO_CIRCLE_YET.findall(cell)) == 1 and old in _RIGHT
     return _NO_CIRCLE_YET.sub(lambda _: _RIGHT.replace(old, new) if old else _RIGHT, cell)
+
+
+def judged(cell, claims, old, new):
+    """The cell with a mistake, and the claims that follow it; the one that does not hold is printed."""
+    told = textwrap.indent("\n".join(claims), "    ")
+    return f"{written(cell, old, new)}\ntry:\n{told}\nexcept AssertionError as told:\n    print(told)"

@@ -15,14 +15,13 @@ from ir50p_lab.course.robot.parts import parts
 from ir50p_lab.errors import BenchError, BoardLostError, InputError
 
 _COLOURS = COLOURS["blue"], COLOURS["orange"], COLOURS["green"]
-_MOVED, _LATE = 1e-3, 0.02  # m the tip may be beside its circle; rad/s the speed from the change of its angles
 
 
-def circle_in_use(circle, arm, centre, radius, first, seconds):
-    """The student's circle(t), or the course's while it is none; a line says which, and what is wrong with it.
+def circle_in_use(circle, arm, centre, radius, first, lap):
+    """The student's circle(t), or the course's while it gives no angles; a line says which, and why.
 
-    Args: circle: f(t) -> (3, 3), rows q, qd, qdd; centre: (3,) m; radius: m; first: (3,) rad, where it has to begin;
-    seconds: of the round. Raises InputError for a circle that the tip cannot follow.
+    Whether it is a circle the notebook asks. Args: circle: f(t) -> (3, 3), rows q, qd, qdd; centre: (3,) m; radius: m;
+    first: (3,) rad, where it begins; lap: s for a round. Raises InputError for a circle that the tip cannot follow.
     """
     limits, turns = parts(arm).limits, np.linspace(0, 2 * np.pi, 100)
     places = centre + radius * np.column_stack([np.cos(turns), np.sin(turns), 0 * turns])
@@ -31,44 +30,50 @@ def circle_in_use(circle, arm, centre, radius, first, seconds):
         raise InputError(f"a circle of radius {radius} m: {missing} of its 100 places have no pose; {remedy}")
 
     def course(t):
-        turned, rate, _ = my_robot.quintic(0.0, 2 * np.pi, seconds, t)
+        turned, rate, _ = my_robot.quintic(0.0, 2 * np.pi, lap, t)
         out, along = np.array([[np.cos(turned), np.sin(turned), 0], [-np.sin(turned), np.cos(turned), 0]])
         p = centre + radius * out
         q = my_robot.reach(p, arm.l, first, limits)
         J = my_robot.jacobian(my_robot.frames(q, arm.l), 3, p)[:3]
         return np.array([q, np.linalg.solve(J, radius * rate * along), np.zeros(3)])
 
+    if says := _no_angles(circle, lap):
+        print(f"circle: the course's. Of yours: {says}")
+        return course
+    print("circle: yours")
+    return circle
+
+
+def _no_angles(circle, lap):
+    """Why circle(t) is no function of the time that gives numbers (3, 3), in a sentence; "" if it is."""
+    asked = np.linspace(0, lap, 9)
     try:
-        wrong = _wrong_with(lambda t: array_like(np.zeros((3, 3)), circle, t), arm, centre, radius, first, seconds)
+        there, back = ([array_like(np.zeros((3, 3)), circle, t) for t in row] for row in (asked, asked[::-1]))
     except Failed as failed:
-        wrong = "it gives no angles yet" if "ellipsis" in failed.args[0] else failed.args[0]
-        if "None" in wrong:
-            wrong = "something in it is None; `reach` gives None where there is no pose: is the place on the circle?"
-    print(f"circle: the course's. Of yours: {wrong}" if wrong else "circle: yours")
-    return course if wrong else circle
+        says = failed.args[0]
+        if "is None" in says:
+            return "something in it is None; `reach` gives None where there is no pose: is the place on the circle?"
+        return "it gives no angles yet" if "ellipsis" in says else says
+    same = np.array_equal(there, back[::-1])
+    return "" if same else "asked for the same t twice, it gives two answers: it remembers"
 
 
-def _wrong_with(circle, arm, centre, radius, first, seconds):
-    """What is wrong with circle(t), in a sentence; "" if nothing is."""
-    if (off := np.abs(circle(0.0)[0] - first).max()) > _MOVED:
-        return f"at t = 0 a joint stands {off:.3f} rad from where the way ends"
-    for t in np.linspace(0.05, 0.95, 7) * seconds:
-        q, qd, _ = circle(t)
-        away = my_robot.forward_kinematics(q, arm.l) - centre
-        if abs(np.hypot(*away[:2]) - radius) > _MOVED or abs(away[2]) > _MOVED:
-            return f"at t = {t:.2f} s the tip is {np.round(1000 * away)} mm (x, y, z) from the centre"
-        if np.abs(circle(t)[0] - q).max() > 0 or np.abs(circle(0.0)[0] - first).max() > _MOVED:
-            return f"asked for t = {t:.2f} s twice, it gives two answers: it remembers"
-        if np.abs((circle(t + 1e-3)[0] - circle(t - 1e-3)[0]) / 2e-3 - qd).max() > _LATE:
-            return f"at t = {t:.2f} s its speeds are not the change of its angles"
-    for t in (0.0, seconds):
-        if (speed := np.abs(circle(t)[1]).max()) > _LATE:
-            return f"at t = {t:g} s it asks for {speed:.2f} rad/s of an arm that stands"
-    if np.abs(circle(seconds)[0] - first).max() > _MOVED:
-        return f"after {seconds:g} s it is not back"
-    if my_robot.forward_kinematics(circle(seconds / 2)[0], arm.l)[0] > centre[0]:
-        return "after half of the time it is not on the far side: once round was asked for"
-    return ""
+class Filtered:
+    """The student's low pass of notebook 10 between the potentiometers and a controller, sample by sample."""
+
+    def __init__(self, controller, cutoff_hz):
+        self.controller = controller
+        self._share = my_robot.low_pass(np.array([0.0, 1.0]), cutoff_hz, 100)[1]  # of a jump, after one sample
+
+    def reset(self):
+        """Before a run."""
+        self._seen = None
+        self.controller.reset()
+
+    def step(self, t, q, reference):
+        """Pushes for filtered angles."""
+        self._seen = q if self._seen is None else self._seen + self._share * (q - self._seen)
+        return self.controller.step(t, self._seen, reference)
 
 
 def circle_figure(centre, radius, recording, **tips):
