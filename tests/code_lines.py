@@ -24,13 +24,13 @@ BUDGETS = {
     "bench": 2406,
     "identification": 1572,
     "vision": 2150,
-    "course": 7850,  # ten more functions of the student's
+    "course": 7851,  # ten more functions of the student's
     "launcher": 540,
     "grading": 0,
     "publishing": 482,
     "root": 230,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS = 17_846, 22_500
+BUDGET_OF_ALL, BUDGET_OF_TESTS = 17_847, 22_500
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,

@@ -19,7 +19,8 @@ NUMBERS = (
         "how far, in rad, a first-order low pass of 2 Hz is behind a joint that turns at a steady 0.5 rad/s",
         _SPEED * _LAG,
         unit="rad",
-        tolerance=5e-4,
+        tolerance=2.6e-3,
+        because="with half a sample or without",
         why="A PID behind this filter steers by where the joint was: that is why it swings.",
         slips={
             "That is the lag in seconds: how far does the joint turn in that time?": _LAG,
@@ -36,7 +37,7 @@ NUMBERS = (
         tolerance=1e-3,
         why="Seven degrees, by friction alone: this is why lowering Kp1 leaves a large error.",
         slips={
-            "That divides N m by PWM counts per rad: bring both to one unit with K.": _FS / _KP,
+            "That divides N m by PWM counts per rad: bring both to one unit with k.": _FS / _KP,
             "That is the Coulomb friction of a joint that moves; a joint at rest holds up to fs.": _FC / (_K * _KP),
             "Upside down: a larger Kp must leave a smaller error.": _K * _KP / _FS,
             "That is the breakaway in PWM counts; Kp says how many counts a radian gives.": _FS / _K,

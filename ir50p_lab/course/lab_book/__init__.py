@@ -5,7 +5,7 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "predictions": ["change", "keep", "measured", "note", "now", "path", "predict", "read"],
+        "predictions": ["change", "keep", "measured", "note", "now", "path", "predict", "read", "why"],
         "student_file": ["LabBookError"],
         "way_to_the_ball": ["so_far"],
     },
