@@ -226,7 +226,7 @@ def test_the_loop_of_nine_lines_feeds_the_view(heard, tmp_path):
         run = bench.recording
         tail = run.recent(0.3)
         np.testing.assert_array_equal(tail.q, run.q[-len(tail) :])
-        assert 0.25 < tail.t[-1] - tail.t[0] < 0.35
+        assert len(tail) == 31  # cycles; on a busy machine they last longer
     until(lambda: view.track)
     path = forward_kinematics(IR50P, run.q[-1])
     first = view.shape["runs"][0]["q"]
