@@ -53,7 +53,7 @@ def test_calibration_of_a_real_arm(board, monkeypatch):
     names = {"np": np, "arm": IR50P, "views": measure_views, "visit": opened(board), "my_robot": my_robot}
     exec(cell("10", "measure-15").replace("my_degrees, my_counts = [], []", lists), names)
     angles, read = names["readings"]
-    names |= {"JointCalibration": JointCalibration, "save_result": save_result, "fit_calibration": fit_calibration}
+    names |= {"JointCalibration": JointCalibration, "save_result": save_result}
     names["fits"] = [my_robot.fit_line(read[:, k], angles[:, k]) for k in range(3)]
     names["slopes"], names["offsets"] = np.transpose([fit[:2] for fit in names["fits"]])
     assert newest_result("calibration", opened(board)) is None
