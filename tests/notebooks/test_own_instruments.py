@@ -9,7 +9,7 @@ from fake_board import FakeBoard
 from notebook_runner import FOLDER
 
 import ir50p_lab.vision
-from ir50p_lab.bench import JointCalibration, SerialBench, nominal_calibration
+from ir50p_lab.bench import JointCalibration, SerialBench, fit_calibration, nominal_calibration
 from ir50p_lab.course import my_robot, save_result
 from ir50p_lab.course.at_the_bench import measure_views
 from ir50p_lab.course.lab_book.results import newest_result
@@ -60,6 +60,9 @@ def test_calibration_of_a_real_arm(board, monkeypatch):
     exec(cell("10", "measure-40"), names)
     bench = opened(board)
     assert bench.calibration.source.startswith("yours, calibration-1")
+    judged = fit_calibration(angles, read)
+    for error in ("stderr_slope", "stderr_zero"):
+        np.testing.assert_allclose(getattr(bench.calibration, error), getattr(judged, error), rtol=1e-6)
     off = np.abs(np.subtract(bench.calibration.slope, truth.slope))
     assert np.all(off < 0.01 * np.array(truth.slope)) and np.all(off < 4 * np.array(bench.calibration.stderr_slope))
 

@@ -17,7 +17,13 @@ WRONG = [
     ("(J, v)", "(J, np.zeros(3))", "does not hold: angles change as speeds say"),
     ("centre + radius", "ball + radius", "does not hold: the tip is on the circle; outwards and upwards"),
     ("np.sin(turned), 0])\n    q", "0, 0])\n    q", "does not hold: the tip is on the circle; outwards and upwards"),
-    ("centre + radius", "centre + 9 * radius", "`reach` gives None"),
+    ("centre + radius", "centre + 9 * radius", "there it should be [ 0.48 -0.15  0.13] m"),
+    ("place = centre +", "place = centre\n    place +=", "changes an array that others use, too: work on a copy"),
+    ("    place", "    if t > lap:\n        return None\n    place", "is its `return` reached in every case?"),
+    ("[q, ", "[np.degrees(q), ", "does not hold: joints keep their limits"),
+    ("    J", "    q = q if turned < np.pi else q * [1, 1, -1]\n    J", "does not hold: joints keep their limits"),
+    ("    place", "    turned = 2 * np.pi * t / lap\n    place", "does not hold: it begins, ends and waits at `first`"),
+    ("np.linalg.solve(J, v)", "q", "does not hold: it begins, ends and waits at rest"),
     ("    place", "    turned, rate = 2 * turned, 2 * rate\n    place", "does not hold: rounds at half time"),
 ]
 

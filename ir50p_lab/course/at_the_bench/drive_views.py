@@ -37,25 +37,25 @@ def circle_in_use(circle, arm, centre, radius, first, lap):
         J = my_robot.jacobian(my_robot.frames(q, arm.l), 3, p)[:3]
         return np.array([q, np.linalg.solve(J, radius * rate * along), np.zeros(3)])
 
-    if says := _no_angles(circle, lap):
-        print(f"circle: the course's. Of yours: {says}")
-        return course
-    print("circle: yours")
-    return circle
+    np.asarray(centre).setflags(write=False)  # `place = centre`, `place += ...` would move it for good
+    says = _no_angles(circle, lap, lambda t: my_robot.forward_kinematics(course(t)[0], arm.l))
+    print(f"circle: the course's. Of yours: {says}" if says else "circle: yours")
+    return course if says else circle
 
 
-def _no_angles(circle, lap):
+def _no_angles(circle, lap, place):
     """Why circle(t) is no function of the time that gives numbers (3, 3), in a sentence; "" if it is."""
-    asked = np.linspace(0, lap, 9)
+    asked, given = np.r_[np.linspace(0, lap, 9), -1, lap + 1], []
     try:
-        there, back = ([array_like(np.zeros((3, 3)), circle, t) for t in row] for row in (asked, asked[::-1]))
+        for t in (*asked, *asked[::-1]):
+            given.append(array_like(np.zeros((3, 3)), circle, t))
     except Failed as failed:
         says = failed.args[0]
         if "is None" in says:
-            return "something in it is None; `reach` gives None where there is no pose: is the place on the circle?"
+            says = f"at t = {t:.1f} s something in it is None; `reach` gives None where there is no pose"
+            return f"{says}. Print the place that it gets: there it should be {place(t).round(3)} m"
         return "it gives no angles yet" if "ellipsis" in says else says
-    same = np.array_equal(there, back[::-1])
-    return "" if same else "asked for the same t twice, it gives two answers: it remembers"
+    return "" if np.array_equal(given, given[::-1]) else "the same t twice gives two answers: it remembers"
 
 
 class Filtered:

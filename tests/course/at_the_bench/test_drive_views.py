@@ -59,7 +59,9 @@ NO_ANGLES = {
     "memory": (remembers, "two answers: it remembers"),
     "six rows": (lambda t: circle(t, rows=6), "LinAlgError"),
     "no zeros": (lambda t: circle(t)[:2], r"\(2, 3\)"),
-    "out of reach": (lambda t: circle(t, radius=0.6), "`reach` gives None where there is no pose"),
+    "out of reach": (lambda t: circle(t, radius=0.6), r"`reach` gives None .* \[ 0\.48 -0\.15  0\.13\] m"),
+    "nothing afterwards": (lambda t: circle(t) if t <= SECONDS else None, "returns nothing"),
+    "the centre is moved": (lambda t: CENTRE.__iadd__(0.1), "work on a copy"),
 }
 NO_CIRCLE = {
     "degrees": (lambda t: circle(t, unit=180 / np.pi), "joints keep their limits"),
