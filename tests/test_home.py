@@ -10,11 +10,11 @@ from ir50p_lab.bench.arm_instance import chosen_copy
 from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.course.lab_book import claims
 from ir50p_lab.course.lab_book.progress import progress_path, record
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.publishing import report
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.home import PROJECT, home, path_setting, setting
 from ir50p_lab.launcher.commands import _first_page
 from ir50p_lab.modelling import IR50P, Arm, load_arm
-from ir50p_lab.publishing import report
 from ir50p_lab.vision import open_camera
 
 DRESSES = ["{}", '"{}"', "'{}'", "  {}\t", ' "{}" ', "\" '{}'\"", "{}\r"]

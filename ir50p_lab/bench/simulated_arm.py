@@ -12,8 +12,8 @@ from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.jit import jit, on_floats
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.chain import forward_kinematics, frames, lengths
+from ir50p_lab.simulation.integrators import dry_step
 from ir50p_lab.simulation.plant import FC, FORCE_SCALE, FS, GRAVITY, LIMIT, TF, make_plant
-from ir50p_lab.simulation.steps import dry_step
 
 STEP = 0.001  # s; Moreau's step is of first order, and 1 ms is far below the time constants of the drives
 HIGHEST_COUNT = 1023.0

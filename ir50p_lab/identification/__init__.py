@@ -17,7 +17,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "fitting": ["fit"],
         "output_error": ["OutputError", "output_error"],
         "processing": ["Motion", "causal_derivatives", "central_derivatives", "process"],
-        "recipe": ["identify"],
+        "identify_arm": ["identify"],
         "response_fit": ["FOPDT", "fit_fopdt"],
         "regression": ["LeastSquares", "least_squares"],
         "rls": ["RLS"],

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError
-from ir50p_lab.identification.columns import quantum_of, runs, sampling_period
 from ir50p_lab.identification.regression import least_squares
+from ir50p_lab.identification.time_series import quantum_of, runs, sampling_period
 
 FEWEST = 40  # samples: a shorter record is refused; ten for each of four parameters
 TURNS = 6 * math.pi  # rad: if q spans more, it may be in degrees: joints seldom turn three times, often by 19 degrees

@@ -8,9 +8,9 @@ import numpy as np
 from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.checks import at_bounds
-from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES, RIGID_ON, metres
 from ir50p_lab.identification.regression import least_squares
+from ir50p_lab.identification.time_series import columns_of, sampling_period
 from ir50p_lab.identification.validation import compared
 from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.columns import columns_of, runs, sampling_period
+from ir50p_lab.identification.time_series import columns_of, runs, sampling_period
 from ir50p_lab.inputs import choice, number
 from ir50p_lab.signals.low_pass import low_pass
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification import checks
-from ir50p_lab.identification.columns import columns_of, quantum_of
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.regression import least_squares
+from ir50p_lab.identification.time_series import columns_of, quantum_of
 from ir50p_lab.inputs import choice, number
 from ir50p_lab.signals.low_pass import low_pass
 

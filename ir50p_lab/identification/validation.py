@@ -6,9 +6,9 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification.arm_regressor import regressor
-from ir50p_lab.identification.columns import columns_of, sampling_period
 from ir50p_lab.identification.fit_input import finite
 from ir50p_lab.identification.processing import BOTH, process
+from ir50p_lab.identification.time_series import columns_of, sampling_period
 from ir50p_lab.inputs import number
 from ir50p_lab.modelling.dynamics import as_theta
 

@@ -43,11 +43,11 @@ _MODULES = {
     "test": "tests",
     "targets": "tests.targets",
     "bench-test": "ir50p_lab.bench.bench_test",
-    "export": "ir50p_lab.publishing",
-    "report": "ir50p_lab.publishing.report",
-    "try-page": "ir50p_lab.publishing.try_page",
-    "animation": "ir50p_lab.publishing.animation",
-    "site": "ir50p_lab.publishing.site",
+    "export": "ir50p_lab.course.publishing",
+    "report": "ir50p_lab.course.publishing.report",
+    "try-page": "ir50p_lab.course.publishing.try_page",
+    "animation": "ir50p_lab.course.publishing.animation",
+    "site": "ir50p_lab.course.publishing.site",
     "update": "ir50p_lab.course.lab_book.update",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).

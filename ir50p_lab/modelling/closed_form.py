@@ -131,15 +131,6 @@ def inverse(theta, gravity, q2, q3, a, b, c, A, B, C):
 
 
 @jit()
-def solve_in_line(M, r1, r2, r3):
-    """`solve_mass` where the waist is decoupled (M12 = M13 = M21 = M31 = 0): every in-line arm. No branches."""
-    M11, _, _, _, M22, M23, _, M32, M33 = M
-    minor = M22 * M33 - M23 * M32
-    scale = 1 / minor  # a division takes as long as ten products
-    return r1 / M11, (r2 * M33 - M23 * r3) * scale, (M22 * r3 - r2 * M32) * scale, M11 * minor
-
-
-@jit()
 def solve_mass(M, r1, r2, r3):
     """Solve M x = r for the nine scalars M: x1, x2, x3, and det M (0 or NaN: singular).
 
@@ -147,7 +138,9 @@ def solve_mass(M, r1, r2, r3):
     """
     M11, M12, M13, M21, M22, M23, M31, M32, M33 = M
     if M12 == 0.0 and M13 == 0.0 and M21 == 0.0 and M31 == 0.0:
-        return solve_in_line(M, r1, r2, r3)
+        minor = M22 * M33 - M23 * M32
+        scale = 1 / minor  # a division takes as long as ten products
+        return r1 / M11, (r2 * M33 - M23 * r3) * scale, (M22 * r3 - r2 * M32) * scale, M11 * minor
     minor = M22 * M33 - M23 * M32
     det = M11 * minor - M12 * (M21 * M33 - M23 * M31) + M13 * (M21 * M32 - M22 * M31)
     x1 = (r1 * minor - M12 * (r2 * M33 - M23 * r3) + M13 * (r2 * M32 - M22 * r3)) / det

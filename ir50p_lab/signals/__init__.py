@@ -12,12 +12,10 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     submod_attrs={
         "fourier": ["Fourier", "at_rest", "fourier"],
         "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag"],
-        "noise_and_lag": ["NoiseAndLag", "measured_lag", "noise_and_lag"],
         "quintic": ["quintic", "through"],
         "reference": ["Reference"],
         "sinusoid": ["sinusoid"],
         "steps": ["hold", "steps"],
         "trapezoid": ["trapezoid"],
-        "velocity": ["difference_velocity", "kalman_velocity"],
     },
 )

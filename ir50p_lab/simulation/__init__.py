@@ -8,7 +8,6 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "gain_sweep": ["GainSweep", "sweep_gains"],
         "plant": ["make_plant"],
         "result": ["SimulationResult"],
         "simulate": ["simulate"],

@@ -4,9 +4,8 @@ import numpy as np
 
 from ir50p_lab.controllers.law import law_step
 from ir50p_lab.jit import jit
-from ir50p_lab.modelling import closed_form as cf
+from ir50p_lab.simulation.integrators import acceleration, advance
 from ir50p_lab.simulation.plant import LIMIT
-from ir50p_lab.simulation.steps import acceleration, advance
 
 
 @jit(nogil=True)
@@ -38,7 +37,7 @@ def _continuous_rate(theta, n, p, r, x, rate, u):
         u[i] = min(max(command, -p[9 + i]), p[9 + i])
         wound = abs(command) > p[9 + i] and command * e > 0.0
         rate[i], rate[6 + i] = x[3 + i], 0.0 if wound else e
-    A, B, C = acceleration(cf.solve_mass, theta, n, x[1], x[2], x[3], x[4], x[5], u[0], u[1], u[2])
+    A, B, C = acceleration(theta, n, x[1], x[2], x[3], x[4], x[5], u[0], u[1], u[2])
     rate[3], rate[4], rate[5] = A, B, C
 
 

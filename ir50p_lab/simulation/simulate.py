@@ -100,7 +100,7 @@ def _own_limit(controller):
 
 def _python_loop(plant, controller, t, r, x, step, steps, q, qd, u):
     """The same loop for a controller that is not compiled."""
-    from ir50p_lab.simulation.steps import advance
+    from ir50p_lab.simulation.integrators import advance
 
     for k in range(len(t)):
         q[k], qd[k] = x[:3], x[3:]

@@ -15,7 +15,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "image": ["check_image", "is_rendered", "list_images", "load_image", "save_image", "to_grey"],
         "calibration.calibrate": ["calibrate", "calibrate_corners"],
         "calibration.board": ["Checkerboard"],
-        "calibration.reasons": ["Reason", "Rejected"],
+        "calibration.reject_reasons": ["Reason", "Rejected"],
         "calibration.result": ["Calibration"],
         "ball.find": ["Ball", "Balls", "find_balls"],
         "board_pose": ["board_points", "board_pose"],

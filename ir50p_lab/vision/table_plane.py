@@ -57,7 +57,7 @@ class TablePlane:
         with the reason; else as `from_board`.
         """
         from ir50p_lab.vision.calibration.corners import find_checkerboard
-        from ir50p_lab.vision.calibration.reasons import NotUsable
+        from ir50p_lab.vision.calibration.reject_reasons import NotUsable
         from ir50p_lab.vision.image import to_grey
 
         grey = to_grey(image)

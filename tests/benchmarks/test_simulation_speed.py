@@ -12,7 +12,7 @@ from arms import mujoco_model, mujoco_xml
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.simulation import simulate, sweep_gains
+from ir50p_lab.simulation import simulate
 
 ARM = IR50P.without_friction()
 TARGET, KP, KD, LIMIT = np.array([1.0, 0.5, -0.7]), np.full(3, 50.0), np.full(3, 5.0), 20.0
@@ -79,19 +79,4 @@ def test_single_simulation_against_mujocos_python_loop(request):
     mine, peer = best_of(ours, 20 if full else 1), best_of(mujoco_python_loop, 8 if full else 1)
     print(
         f"\nsingle simulation of 10 s: ours {mine * 1e3:.2f} ms, MuJoCo {peer * 1e3:.1f} ms: {peer / mine:.0f}x (target 35x)"
-    )
-
-
-def test_gain_sets_against_mujoco_rollout(request):
-    full = request.config.getoption("benchmark_enable")
-    n_ours, n_peer, duration = (10_000, 24, 10.0) if full else (64, 2, 0.1)
-    rng = np.random.default_rng(0)
-    kp, kd = rng.uniform(20, 80, (n_ours, 3)), rng.uniform(3, 8, (n_ours, 3))
-    mine = best_of(lambda: sweep_gains(ARM, TARGET, kp=kp, kd=kd, limit=LIMIT, duration=duration, progress=False), 2)
-    models = [servo_model(*gains) for gains in zip(kp[:n_peer], kd[:n_peer], strict=True)]
-    peer = best_of(lambda: rollout(models, round(duration * 1000)), 1)
-    rate, peer_rate = n_ours / mine, n_peer / peer
-    print(
-        f"\ngain sets: ours {n_ours} in {mine:.1f} s = {rate:.0f}/s; mujoco.rollout on 2 threads, one model per gain "
-        f"set, {n_peer} in {peer:.1f} s = {peer_rate:.1f}/s: {rate / peer_rate:.0f}x (target 40x)"
     )

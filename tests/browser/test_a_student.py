@@ -14,7 +14,7 @@ import solutions
 from conftest import running_lab
 from test_live_arm_in_lab import KERNEL_IDLE, VIEW, drag_tip, show
 
-from ir50p_lab.publishing.report import _NAMES, _named
+from ir50p_lab.course.publishing.report import _NAMES, _named
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "notebooks").glob("0[0-7]_*.ipynb"))
 WRITTEN = solutions.ORDER[: solutions.ORDER.index("PID")]
@@ -118,7 +118,7 @@ def test_nothing_of_a_student_is_lost(browser, tmp_path):
         said = run(page, 1, "from ir50p_lab.course import my_robot\nmy_robot.done()")
         assert all(f"'{name}'" in said for name in WRITTEN)
     context.close()
-    command = [sys.executable, "-m", "ir50p_lab.publishing.report", "--name", "Ada"]
+    command = [sys.executable, "-m", "ir50p_lab.course.publishing.report", "--name", "Ada"]
     subprocess.run(command, env=os.environ | home, check=True, cwd=Path(__file__).parents[2])
     (report,) = (tmp_path / "mine" / "results").glob("report_*.html")
     text = report.read_text(encoding="utf-8")

@@ -5,10 +5,10 @@ import re
 import nbformat
 import pytest
 
+from ir50p_lab.course.publishing.__main__ import main
+from ir50p_lab.course.publishing.export import export
+from ir50p_lab.course.publishing.formulas import mathml
 from ir50p_lab.errors import InputError, LabError
-from ir50p_lab.publishing.__main__ import main
-from ir50p_lab.publishing.export import export
-from ir50p_lab.publishing.formulas import mathml
 
 CELLS = [
     "from ir50p_lab.course.draw.style import new_figure\nfigure = new_figure(3, 2)\nfigure",

@@ -3,8 +3,8 @@
 import pytest
 from PIL import Image
 
-from ir50p_lab.publishing.animation import PICTURE
-from ir50p_lab.publishing.try_page import MADE_FROM, PAGE, fingerprint
+from ir50p_lab.course.publishing.animation import PICTURE
+from ir50p_lab.course.publishing.try_page import MADE_FROM, PAGE, fingerprint
 
 
 def test_it_was_made_from_what_is_here():

@@ -9,8 +9,8 @@ import pytest
 from arms import mujoco_model, random_arm, random_states
 from hypothesis import given
 from hypothesis import strategies as st
+from thesis_numbers import STATES, reference, same_quantities
 
-from ir50p_lab.course.printed.reference import STATES, reference, same_quantities
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import (
     IR50P,

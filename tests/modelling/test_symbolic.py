@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import sympy
+from thesis_numbers import C_NUMBERS, STATES, reference, same_quantities
 
-from ir50p_lab.course.printed.reference import C_NUMBERS, STATES, reference, same_quantities
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import (
     IR50P,

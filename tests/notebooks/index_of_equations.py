@@ -74,9 +74,6 @@ def docstring_mentions(folder):
                 name = getattr(node, "name", path.stem)
                 for tag in tags(ast.get_docstring(node) or ""):
                     found.setdefault(tag, []).append(name if folder == "ir50p_lab" else path.stem)
-        if folder == "tests":
-            for tag in tags(path.read_text(encoding="utf-8")):
-                found.setdefault(tag, []).append(path.stem)
     return found
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from notebook_runner import NOTEBOOKS, ROOT, run_notebook
 
-from ir50p_lab.publishing import site
+from ir50p_lab.course.publishing import site
 
 LACKING = {"PYTHONPATH": f"{ROOT / 'tests' / 'browser_tab'}{os.pathsep}{ROOT}"}
 NUMBERS = """
@@ -38,7 +38,7 @@ CHECKS = """
 import numpy as np
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.robot.catalogue import NOTEBOOKS, task
-from ir50p_lab.publishing.site import NOTEBOOKS as tab
+from ir50p_lab.course.publishing.site import NOTEBOOKS as tab
 import solutions
 written = solutions.load()
 for name in (name for number in tab for name in NOTEBOOKS[number]):

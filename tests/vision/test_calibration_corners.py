@@ -9,7 +9,7 @@ from board_pictures import look, paint, project
 
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.vision import Checkerboard, Reason, board_points, calibrate, find_checkerboard
-from ir50p_lab.vision.calibration.reasons import NotUsable
+from ir50p_lab.vision.calibration.reject_reasons import NotUsable
 
 BOARD = Checkerboard()
 

@@ -113,9 +113,8 @@ class BenchPanel(widgets.VBox):
         label = name if name[0] == "q" else name.capitalize()
         spec = slider(*numbers, label=label)
         control, row = make_control(name, spec, "34px", partial(self._guarded, moved, name))
-        control.layout.width = f"{34 + width}px"
-        control.box.layout.width = "66px"
-        row.children = (control, control.box)
+        control.layout.width = f"{100 + width}px"
+        row.children = (control,)
         self.controls[name] = control
         return row
 

@@ -5,8 +5,8 @@ import inspect
 
 import numpy as np
 
-from ir50p_lab.course.checking.forms import no_numbers
-from ir50p_lab.course.checking.stops import why_it_stops
+from ir50p_lab.course.checking.explain_error import why_it_stops
+from ir50p_lab.course.checking.shape_checks import no_numbers
 from ir50p_lab.course.checking.task import Failed, is_run, shown
 
 

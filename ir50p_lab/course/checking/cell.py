@@ -12,8 +12,8 @@ from collections import Counter
 
 import numpy as np
 
-from ir50p_lab.course.checking.stops import ROOM
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.checking.explain_error import ROOM
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import ORDER
 from ir50p_lab.course.robot.catalogue import task as find
 from ir50p_lab.course.robot.source import GIVEN, Source

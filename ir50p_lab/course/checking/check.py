@@ -11,7 +11,7 @@ from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.note import Note, ended, show
 from ir50p_lab.course.checking.numbers import check_number
 from ir50p_lab.course.lab_book.progress import record
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import ORDER, is_function, work_on
 from ir50p_lab.errors import InputError
 

@@ -14,7 +14,7 @@ import numpy as np
 from ir50p_lab.course.checking.calling import call, check_signature, given
 from ir50p_lab.course.checking.cell import made, written_wrong
 from ir50p_lab.course.checking.distortions import distortions, entries
-from ir50p_lab.course.checking.forms import kind_of, no_numbers, number_of_results
+from ir50p_lab.course.checking.shape_checks import kind_of, no_numbers, number_of_results
 from ir50p_lab.course.checking.task import Failed, shown
 from ir50p_lab.course.checking.variants import in_words_of, variants
 from ir50p_lab.course.robot.source import Source

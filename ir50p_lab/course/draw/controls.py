@@ -1,6 +1,6 @@
-"""The controls of a live figure: sliders with a number box, and menus."""
+"""The controls of a live figure: sliders, whose number can be clicked and typed, and menus."""
 
-import threading
+import math
 from dataclasses import dataclass
 
 import ipywidgets as widgets
@@ -45,30 +45,12 @@ def make_control(name, spec, label_width, moved):
         raise InputError(f"{name}={spec!r}: give (min, max, step, start), slider(...) or a list of choices")
     common = {"min": spec.min, "max": spec.max, "step": spec.step, "value": spec.start}
     whole = all(isinstance(v, int) for v in common.values())
-    slider_kind = widgets.IntSlider if whole else widgets.FloatSlider
-    box_kind = widgets.BoundedIntText if whole else widgets.BoundedFloatText
-    control = slider_kind(**common, description=spec.label or name, style=style, layout=layout, readout=False)
-    control.box = box_kind(**common, layout={"width": "80px"})
-    _tie(control, control.box, moved)
-    return control, widgets.HBox([control, control.box, widgets.Label(spec.unit)])
-
-
-def _tie(control, box, moved):
-    """Slider and number box follow each other; the box comes after `moved`, whose picture is what the eye waits for."""
-    filling = threading.local()  # of each thread its own: a number that was filled in must not drag the slider back
-
-    def slid(_):
-        moved()
-        filling.on = True
-        box.value = value_of(control)
-        filling.on = False
-
-    def typed(change):
-        if not getattr(filling, "on", False):
-            control.value = change["new"]
-
-    control.observe(slid, "value")
-    box.observe(typed, "value")
+    kind = widgets.IntSlider if whole else widgets.FloatSlider
+    decimals = 0 if whole else max(0, math.ceil(-math.log10(spec.step)))
+    shown = {"readout_format": "d" if whole else f".{decimals}f"}
+    control = kind(**common, **shown, description=spec.label or name, style=style, layout=layout)
+    control.observe(lambda _: moved(), "value")
+    return control, widgets.HBox([control, widgets.Label(spec.unit)])
 
 
 def value_of(control):

@@ -7,6 +7,6 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     submod_attrs={
         "predictions": ["change", "keep", "measured", "note", "now", "path", "predict", "read", "why"],
         "student_file": ["LabBookError"],
-        "way_to_the_ball": ["so_far"],
+        "ball_misses": ["so_far"],
     },
 )

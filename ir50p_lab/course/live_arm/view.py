@@ -13,8 +13,8 @@ import traitlets
 
 from ir50p_lab.browser_tab import IN_BROWSER, needs_more
 from ir50p_lab.course.checking.calling import guarded
-from ir50p_lab.course.checking.forms import no_numbers
 from ir50p_lab.course.checking.note import Note, show
+from ir50p_lab.course.checking.shape_checks import no_numbers
 from ir50p_lab.course.checking.task import Failed
 from ir50p_lab.course.draw.arm3d import ArmView
 from ir50p_lab.course.draw.painter import DRAWING, Painter

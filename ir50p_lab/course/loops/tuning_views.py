@@ -19,7 +19,6 @@ def three_columns(panel):
     grid.layout.grid_template_columns = "max-content " * 3
     for control in panel.controls.values():
         control.layout.width = "190px"
-        control.box.layout.width = "64px"
     return panel
 
 

@@ -11,7 +11,7 @@ A class that is written in stages serves at its stage in the notebook that works
 from time import monotonic
 
 from ir50p_lab import home
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import ORDER, at_work, is_function, task, written
 
 _FRESH = 0.1  # s: for so long a function that was looked up is used without looking at its file again

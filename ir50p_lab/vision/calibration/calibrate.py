@@ -12,7 +12,7 @@ from ir50p_lab.vision.calibration import checks
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.corners import find_checkerboard
 from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, fit_lens, height
-from ir50p_lab.vision.calibration.reasons import NotUsable, Reason, Rejected
+from ir50p_lab.vision.calibration.reject_reasons import NotUsable, Reason, Rejected
 from ir50p_lab.vision.calibration.result import LENS, NAMES, Calibration, View
 from ir50p_lab.vision.checks import picture_size, point_list
 from ir50p_lab.vision.image import list_images, load_image, to_grey

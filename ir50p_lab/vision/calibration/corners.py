@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from ir50p_lab.vision.calibration.board import check_pattern
-from ir50p_lab.vision.calibration.reasons import NotUsable, Reason
+from ir50p_lab.vision.calibration.reject_reasons import NotUsable, Reason
 
 _SEARCHED = 1280  # px; corners are searched in a picture reduced to this, and refined in the picture itself
 _SMOOTH = 0.8  # px, blur of the copy for the second finder: in a dark picture it would follow every speck of noise

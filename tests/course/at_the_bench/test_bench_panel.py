@@ -57,9 +57,7 @@ def test_sliders_reach_the_running_loop(panel):
     np.testing.assert_array_equal(panel.run.gains["kp"], (100, 225, 270))
     np.testing.assert_array_equal(panel.run.gains["kd"], (40, 30, 10))
     until(lambda: abs(np.degrees(panel.run.recent(0.01).reference[-1][1]) - 20) < 1e-9)
-    assert panel.controls["kp1"].box.value == 100
-    panel.controls["kp2"].box.value = 250.0  # typed
-    assert panel.controls["kp2"].value == 250
+    panel.controls["kp2"].value = 250.0
     np.testing.assert_array_equal(panel.run.gains["kp"], (100, 250, 270))
 
 

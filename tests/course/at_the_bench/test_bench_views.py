@@ -6,9 +6,8 @@ import pytest
 from ir50p_lab.bench import Recording, SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.at_the_bench import views
-from ir50p_lab.course.draw.painter import Painter
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals import low_pass, through
+from ir50p_lab.signals import through
 
 TABLES = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30), "limit_pwm": 255}
 
@@ -28,16 +27,3 @@ def test_origin():
     assert views.origin(Recording.from_arrays(t, q)) == "origin unknown"
     assert views.origin(Recording.from_arrays(t, q, header={"simulated": "true"})) == "simulated arm"
     assert views.origin(Recording.from_arrays(t, q, header={"simulated": "false"})) == "the real arm"
-
-
-def test_filter_view_moves_line_and_ring(motion):
-    view = views.FilterView(motion, rest=(0.2, 2), moving=(2, 6.5))
-    assert [one.noise for one in view.curve] == sorted(one.noise for one in view.curve)
-    assert len(view.kalman) == 3 and len(view.figure.axes) == 2
-    painter = Painter(view.figure)
-    said, pictures = [], set()
-    for cutoff in (1.0, 3.0, 20.0):
-        said.append(view.update(low_pass(motion.q[:, 0], cutoff, 100), cutoff))
-        pictures.add(painter.png())
-    assert len(set(said)) == len(pictures) == 3
-    assert said[1].startswith("angle: 53 ms late")  # 1/(2 pi 3 Hz)

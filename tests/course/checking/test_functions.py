@@ -11,7 +11,7 @@ from cells import cell
 from ir50p_lab import modelling
 from ir50p_lab.course import check, lab_book, my_robot, reset
 from ir50p_lab.course.checking.grade import grade
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import ORDER, task, written
 from ir50p_lab.modelling import IR50P
 

@@ -12,7 +12,8 @@ from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking.cell import take
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.task import Failed, Task, text_of
-from ir50p_lab.course.robot import catalogue, folder
+from ir50p_lab.course.robot import catalogue
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.source import Source
 
 

@@ -13,7 +13,7 @@ from ir50p_lab.course import check, my_robot, reset
 from ir50p_lab.course.checking import grade as grading
 from ir50p_lab.course.checking.calling import call, given
 from ir50p_lab.course.checking.task import Mistake
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import task, written
 
 

@@ -93,18 +93,6 @@ def test_label_is_the_text_beside_the_slider_and_unit_the_one_behind_it():
     assert line_panel().controls["height"].description == "height"
 
 
-def test_number_box_and_slider_follow_each_other():
-    panel = line_panel()
-    control = panel.controls["height"]
-    control.value = 2.5
-    assert control.box.value == 2.5
-    control.box.value = -4.5
-    assert panel.drawn == {"height": -4.5}
-    assert list(panel.line.get_ydata()) == [-4.5, -4.5]
-    control.box.value = 99.0
-    assert control.box.value == panel.drawn["height"] == 10.0, "held at the end of the scale"
-
-
 def test_reset_puts_everything_back():
     panel = line_panel(extra=[1, 2, 3])
     start = shown(panel)

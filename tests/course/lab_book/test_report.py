@@ -7,7 +7,7 @@ from cells import cell
 from matplotlib.figure import Figure
 
 from ir50p_lab.course import check, helped_by, keep, measured, note, partners, predict, solution, why
-from ir50p_lab.publishing import report
+from ir50p_lab.course.publishing import report
 
 
 def test_a_report_of_everything(tmp_path, monkeypatch, capsys):

@@ -6,7 +6,7 @@ import solutions
 from cells import cell
 
 from ir50p_lab.course import LiveArm, check, my_robot
-from ir50p_lab.course.kinematics.walk_view import arm_by_table
+from ir50p_lab.course.kinematics.frame_walk import arm_by_table
 from ir50p_lab.course.live_arm.badge import badge_of
 from ir50p_lab.course.start.views import turned_by
 from ir50p_lab.modelling import IR50P

@@ -8,7 +8,8 @@ from cells import cell
 from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.loops.functions import PID_trials as trials
-from ir50p_lab.course.robot import catalogue, folder
+from ir50p_lab.course.robot import catalogue
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import STAGES, task
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate

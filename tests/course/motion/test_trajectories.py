@@ -10,7 +10,7 @@ from ir50p_lab.course.checking.cell import take
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.live_arm.badge import badge_of
 from ir50p_lab.course.motion import trajectory_views as views
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import task
 from ir50p_lab.course.robot.source import Source
 from ir50p_lab.modelling import IR50P, THESIS_A, mass_matrix

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.course.checking.calling import guarded
-from ir50p_lab.course.checking.forms import no_numbers
+from ir50p_lab.course.checking.shape_checks import no_numbers
 from ir50p_lab.course.checking.task import Failed, changed, shown, solutions, table
 
 LOANS = dict(zip(("PID.p", "PID.pi", "PID.limits", "PID"), solutions("PID.loans", __file__), strict=True))

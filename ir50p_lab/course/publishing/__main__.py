@@ -1,11 +1,11 @@
-"""`python -m ir50p_lab.publishing NOTEBOOK...`: behind the command `export`."""
+"""`python -m ir50p_lab.course.publishing NOTEBOOK...`: behind the command `export`."""
 
 import argparse
 import sys
 from pathlib import Path
 
+from ir50p_lab.course.publishing.export import export
 from ir50p_lab.errors import LabError
-from ir50p_lab.publishing.export import export
 
 
 def main(arguments=None):

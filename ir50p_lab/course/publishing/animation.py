@@ -8,9 +8,9 @@ import io
 from PIL import Image
 from tqdm import tqdm
 
+from ir50p_lab.course.publishing.export import find_browser
+from ir50p_lab.course.publishing.try_page import PAGE
 from ir50p_lab.home import PROJECT
-from ir50p_lab.publishing.export import find_browser
-from ir50p_lab.publishing.try_page import PAGE
 
 PICTURE = PROJECT / "docs" / "arm.gif"
 _FRAMES, _SECONDS, _SIZE, _COLOURS = 60, 5.0, (720, 420), 96

@@ -11,11 +11,8 @@ from ir50p_lab.simulation.plant import DRY, FC, FORCE_SCALE, FS, FV, GRAVITY, LE
 
 
 @jit(forceinline=True)
-def acceleration(solve, theta, n, q2, q3, a, b, c, u1, u2, u3):
-    """Accelerations without dry friction: M^-1 (u - C qd - g - fv qd - Tf).
-
-    solve: `cf.solve_mass`, or `cf.solve_in_line` where that is enough.
-    """
+def acceleration(theta, n, q2, q3, a, b, c, u1, u2, u3):
+    """Accelerations without dry friction: M^-1 (u - C qd - g - fv qd - Tf)."""
     s2, c2 = cf.sincos(q2)
     s3, c3 = cf.sincos(q3)
     c23, s23 = c2 * c3 - s2 * s3, s2 * c3 + c2 * s3
@@ -24,21 +21,21 @@ def acceleration(solve, theta, n, q2, q3, a, b, c, u1, u2, u3):
     r1 = u1 - h1 - n[FV + 0] * a - n[TF + 0]
     r2 = u2 - h2 - g2 - n[FV + 1] * b - n[TF + 1]
     r3 = u3 - h3 - g3 - n[FV + 2] * c - n[TF + 2]
-    x1, x2, x3, _ = solve(cf.mass_terms(theta, c2, c3, c23), r1, r2, r3)
+    x1, x2, x3, _ = cf.solve_mass(cf.mass_terms(theta, c2, c3, c23), r1, r2, r3)
     return x1, x2, x3
 
 
 @jit(forceinline=True)
-def rk4_step(solve, theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h):
+def rk4_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h):
     """Classical Runge-Kutta over h seconds with the command held: returns q and qd, six scalars."""
-    a1, b1, c1 = acceleration(solve, theta, n, q2, q3, a, b, c, u1, u2, u3)
+    a1, b1, c1 = acceleration(theta, n, q2, q3, a, b, c, u1, u2, u3)
     k = 0.5 * h
     va, vb, vc = a + k * a1, b + k * b1, c + k * c1
-    a2, b2, c2 = acceleration(solve, theta, n, q2 + k * b, q3 + k * c, va, vb, vc, u1, u2, u3)
+    a2, b2, c2 = acceleration(theta, n, q2 + k * b, q3 + k * c, va, vb, vc, u1, u2, u3)
     wa, wb, wc = a + k * a2, b + k * b2, c + k * c2
-    a3, b3, c3 = acceleration(solve, theta, n, q2 + k * vb, q3 + k * vc, wa, wb, wc, u1, u2, u3)
+    a3, b3, c3 = acceleration(theta, n, q2 + k * vb, q3 + k * vc, wa, wb, wc, u1, u2, u3)
     xa, xb, xc = a + h * a3, b + h * b3, c + h * c3
-    a4, b4, c4 = acceleration(solve, theta, n, q2 + h * wb, q3 + h * wc, xa, xb, xc, u1, u2, u3)
+    a4, b4, c4 = acceleration(theta, n, q2 + h * wb, q3 + h * wc, xa, xb, xc, u1, u2, u3)
     w = h / 6.0
     q1 += w * (a + 2 * va + 2 * wa + xa)
     q2 += w * (b + 2 * vb + 2 * wb + xb)
@@ -115,6 +112,6 @@ def advance(theta, n, x, u, h, steps):
             q1, q2, q3, a, b, c = dry_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h)
     else:
         for _ in range(steps):
-            q1, q2, q3, a, b, c = rk4_step(cf.solve_mass, theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h)
+            q1, q2, q3, a, b, c = rk4_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h)
     x[0], x[1], x[2] = q1, q2, q3
     x[3], x[4], x[5] = cf.not_denormal(a), cf.not_denormal(b), cf.not_denormal(c)

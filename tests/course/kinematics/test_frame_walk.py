@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.kinematics.walk_view import arm_by_table, walk
+from ir50p_lab.course.kinematics.frame_walk import arm_by_table, walk
 from ir50p_lab.modelling import IR50P, dh_matrix, frames
 
 

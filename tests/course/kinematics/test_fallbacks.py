@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.kinematics.stand_ins import pace
+from ir50p_lab.course.kinematics.fallbacks import pace
 from ir50p_lab.modelling import IR50P, THESIS_RODS, jacobian
 
 

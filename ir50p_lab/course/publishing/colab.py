@@ -1,6 +1,6 @@
 """Copies of the notebooks for Google Colab: a first cell fetches the course and installs what the lock says.
 
-`python -m ir50p_lab.publishing.colab FOLDER` writes them; the pages workflow does.
+`python -m ir50p_lab.course.publishing.colab FOLDER` writes them; the pages workflow does.
 """
 
 import sys

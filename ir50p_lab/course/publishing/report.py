@@ -14,7 +14,7 @@ from ir50p_lab.bench import result_files
 from ir50p_lab.course import lab_book, my_robot
 from ir50p_lab.course.checking import numbers
 from ir50p_lab.course.lab_book.progress import read_progress
-from ir50p_lab.course.robot import folder
+from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import ORDER, notebook_of
 from ir50p_lab.home import setting
 

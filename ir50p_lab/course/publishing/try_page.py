@@ -7,9 +7,9 @@ import hashlib
 from pathlib import Path
 
 from ir50p_lab.course.live_arm.view import BUNDLE
+from ir50p_lab.course.publishing import export as pages
+from ir50p_lab.course.publishing import pictures
 from ir50p_lab.home import PROJECT
-from ir50p_lab.publishing import export as pages
-from ir50p_lab.publishing import pictures
 
 FOLDER = PROJECT / "docs" / "try"
 NOTEBOOK, PAGE, MADE_FROM = FOLDER / "try.ipynb", FOLDER / "index.html", FOLDER / "made_from.txt"

@@ -7,9 +7,9 @@ import numpy as np
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.checks import Warnings, check_signals
-from ir50p_lab.identification.columns import columns_of
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
+from ir50p_lab.identification.time_series import columns_of
 
 _CONTRADICT = 1.3  # residual of a recording with the common model over that with its own: if more, it contradicts
 _ALIKE = 0.02  # share of the spread of u: a difference between models that does not matter

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.course.kinematics.column import through_column
+from ir50p_lab.course.kinematics.self_collision import through_column
 from ir50p_lab.modelling import IR50P, inverse_kinematics
 
 

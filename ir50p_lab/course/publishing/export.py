@@ -13,9 +13,9 @@ from nbconvert import HTMLExporter
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from pygments.formatters import HtmlFormatter
 
+from ir50p_lab.course.publishing.formulas import mathml, mathml_in
+from ir50p_lab.course.publishing.pictures import live_arm_script, plain_outputs
 from ir50p_lab.errors import InputError, LabError
-from ir50p_lab.publishing.formulas import mathml, mathml_in
-from ir50p_lab.publishing.pictures import live_arm_script, plain_outputs
 
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
 _CSS = """
