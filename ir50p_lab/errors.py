@@ -7,7 +7,9 @@
     ├─ IdentificationError *       data that say too little
     ├─ RecordingError *            a file of a run
     ├─ BenchError                  PortError, BoardError, BoardLostError, NotMeasuredError, RunawayError, PauseError
-    └─ VisionError                 ImageError *, CameraError, CalibrationError *
+    ├─ VisionError                 ImageError *, CameraError, CalibrationError *
+    ├─ DependencyError             a package that the lab book uses cannot be loaded
+    └─ WrongFolderError            the kernel runs in another copy of the course
     UserWarning                    SuspiciousArmWarning, UnstableLoopWarning
 
 Beside what raises them stand LabBookError, RehearsalError and NotInABrowserError, all LabErrors, ClaimError (an
@@ -17,6 +19,14 @@ AssertionError) and RecordingWarning (a UserWarning).
 
 class LabError(Exception):
     """Base class of every error the lab book raises on purpose."""
+
+
+class DependencyError(LabError, ImportError):
+    """A package that the lab book uses cannot be loaded; the cause is kept."""
+
+
+class WrongFolderError(LabError, ImportError):
+    """The notebook lies in one copy of the course, and the package that it imports in another."""
 
 
 class InputError(LabError, ValueError):

@@ -10,6 +10,7 @@ import tempfile
 from pathlib import Path
 
 from ir50p_lab.browser_tab import IN_BROWSER, quick_home
+from ir50p_lab.errors import WrongFolderError
 
 VARIABLE = "IR50P_HOME"
 PROJECT = Path.cwd().parent if IN_BROWSER else Path(__file__).parents[1]  # in a browser the package is a wheel
@@ -19,6 +20,25 @@ def home():
     """The student's folder: $IR50P_HOME, else notebooks/ of the project. It may not exist yet."""
     kept = PROJECT / "notebooks"
     return path_setting(VARIABLE) or (quick_home(kept) if IN_BROWSER else kept)
+
+
+def check_folder():
+    """Raise WrongFolderError if the notebook lies in another copy of the course than this package.
+
+    So it is after a folder was copied together with its .venv: its Python imports the package of the old folder, and
+    what the student writes would be kept there.
+    """
+    here = Path.cwd()
+    copies = (
+        one for one in (here, *here.parents) if (one / "environment.txt").is_file() and (one / "ir50p_lab").is_dir()
+    )
+    copy = next(copies, PROJECT)
+    if not IN_BROWSER and not copy.samefile(PROJECT):
+        raise WrongFolderError(
+            f"This notebook lies in {copy}, but its Python belongs to {PROJECT}: what you write would be kept there. "
+            f"Close JupyterLab, open a terminal in {copy} and run 'python3 -m ir50p_lab' (Windows: "
+            "'py -m ir50p_lab'): it sets up this copy."
+        )
 
 
 def setting(name):

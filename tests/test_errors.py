@@ -12,9 +12,9 @@ def test_the_tree_on_top_is_that_of_the_classes():
     for line in (line for line in errors.__doc__.splitlines() if line.startswith("    ")):
         names = re.findall(r"(\w+(?:Error|Warning))\b( \*)?", line)
         above = classes[names[0][0]]
-        assert above.__base__ is errors.LabError or "─" not in line
+        assert above.__bases__[0] is errors.LabError or "─" not in line
         for name, star in names:
-            assert classes[name] is above or classes[name].__base__ is above, name
+            assert classes[name] is above or classes[name].__bases__[0] is above, name
             assert issubclass(classes[name], ValueError) == bool(star), name
         shown += [name for name, _ in names]
     assert sorted(shown) == sorted(classes)

@@ -12,7 +12,8 @@ from ir50p_lab.course.lab_book import claims
 from ir50p_lab.course.lab_book.progress import progress_path, record
 from ir50p_lab.course.publishing import report
 from ir50p_lab.course.robot import student_package as folder
-from ir50p_lab.home import PROJECT, home, path_setting, setting
+from ir50p_lab.errors import WrongFolderError
+from ir50p_lab.home import PROJECT, check_folder, home, path_setting, setting
 from ir50p_lab.launcher.commands import _first_page
 from ir50p_lab.modelling import IR50P, Arm, load_arm
 from ir50p_lab.vision import open_camera
@@ -102,3 +103,16 @@ def test_nothing_else_reads_the_variables():
 def test_a_user_without_a_home_directory(monkeypatch):
     monkeypatch.setenv("IR50P_HOME", "~nobody-of-this-name/lab")
     assert isinstance(home(), Path)
+
+
+def test_a_notebook_in_a_copied_folder_does_not_write_into_the_old_one(tmp_path, monkeypatch):
+    copy = tmp_path / "copy"
+    (copy / "ir50p_lab").mkdir(parents=True)
+    (copy / "notebooks").mkdir()
+    monkeypatch.chdir(copy / "notebooks")
+    check_folder()  # a folder that only looks alike is none of ours
+    (copy / "environment.txt").touch()
+    with pytest.raises(WrongFolderError, match=r"This notebook lies in .*copy, but its Python belongs to "):
+        check_folder()
+    monkeypatch.chdir(PROJECT / "notebooks")
+    check_folder()

@@ -1,8 +1,8 @@
 """The bench: one interface to the arm on the table, a simulated one, or a recording."""
 
-import lazy_loader
+from ir50p_lab import lazy
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "base": ["Bench", "Sample"],

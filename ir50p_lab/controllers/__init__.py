@@ -4,9 +4,9 @@
 velocity filter live inside the controller. Names are loaded on first use.
 """
 
-import lazy_loader
+from ir50p_lab import lazy
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "base": ["Controller"],

@@ -4,9 +4,11 @@ From below: `draw`, `lab_book`, `printed` (the thesis' equations), `robot` (what
 `live_arm`; on these stand the subjects, from `start` to `reaching`.
 """
 
-import lazy_loader
+from ir50p_lab import home, lazy
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+home.check_folder()
+
+__getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "checking.check": ["check", "reset"],

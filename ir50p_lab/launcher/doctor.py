@@ -6,7 +6,7 @@ import shutil
 import sys
 
 from ir50p_lab.launcher.boards import board_name, permission_remedy
-from ir50p_lab.launcher.environment import LOCK
+from ir50p_lab.launcher.environment import LOCK, UNWANTED
 from ir50p_lab.launcher.problems import COMMAND
 
 
@@ -21,9 +21,13 @@ def report(environment, *, here=False):
         fault = environment.fault()
         cure = f"Run '{COMMAND}' to set up" if fault else f"Run '{COMMAND} setup --rebuild'"
         _line("Environment", f"{environment.folder}: {fault or 'ready'}")
+    else:
+        for name, value in sorted(os.environ.items()):
+            if name in UNWANTED:
+                _line("Variables", f"{name}={value} (in force with --here)")
     found, faults = None, [f"the environment is {fault}"]
     if not fault:
-        found, error = environment.look_inside(sys.executable if here else None)
+        found, error = environment.look_inside(here=here)
         faults = _packages(found, here) if found else [f"the environment does not answer ({error})"]
     _line("Free disk", f"{shutil.disk_usage(root).free / 1e9:.1f} GB (the set-up needs 2)")
     if "IR50P_ARM" in os.environ:

@@ -30,8 +30,10 @@ except ImportError:  # what cannot be used is named by the check
     pass"""
 _BUSY = "ir50p_lab-setup.lock"
 _NOT_MADE = "not made yet"
-_UNWANTED = set(
-    "PYTHONDONTWRITEBYTECODE PYTHONHOME PYTHONPATH PYTHONSTARTUP PYTHONWARNINGS __PYVENV_LAUNCHER__".split()
+#: Of another Python, and where pip should put what it installs.
+UNWANTED = set(
+    "PYTHONDONTWRITEBYTECODE PYTHONHOME PYTHONPATH PYTHONSTARTUP PYTHONWARNINGS __PYVENV_LAUNCHER__ "
+    "PIP_TARGET PIP_PREFIX PIP_ROOT PIP_USER".split()
 )
 
 
@@ -93,16 +95,20 @@ class Environment:
         Without those that bring in another Python's packages or make warnings of others fatal; nor the one that
         container images set: without bytecode each notebook compiles its libraries again, for seconds.
         """
-        variables = {name: value for name, value in os.environ.items() if name not in _UNWANTED}
+        variables = {name: value for name, value in os.environ.items() if name not in UNWANTED}
         variables["VIRTUAL_ENV"] = str(self.folder)
         variables["PATH"] = str(self.scripts) + os.pathsep + variables.get("PATH", "")
         # Kernels and settings of .venv come before those in the home folder: 'python3' is this Python.
         variables["JUPYTER_PREFER_ENV_PATH"] = "1"
         return variables
 
-    def look_inside(self, python=None):
-        """Run the inventory with the Python of .venv, or another: (what it found or None, last line of its errors)."""
-        done = self._run([python or self.python, "-P", inventory.__file__, self.root / LOCK])
+    def look_inside(self, *, here=False):
+        """Run the inventory with the Python of .venv, or `here`: this one, with its variables as they are.
+
+        Returns (what it found or None, last line of its errors).
+        """
+        command = [sys.executable if here else self.python, "-P", inventory.__file__, self.root / LOCK]
+        done = self._run(command, dict(os.environ) if here else None)
         try:
             return json.loads(done.stdout), ""
         except ValueError:
@@ -166,6 +172,7 @@ class Environment:
     def _text(self, lock_file):
         return (self.root / lock_file).read_text("utf-8")  # line ends may differ between checkouts
 
-    def _run(self, command):
-        """Run a Python to its end, with nothing of another Python around it."""
-        return subprocess.run(command, env=self.variables(), capture_output=True, encoding="utf-8", errors="replace")
+    def _run(self, command, variables=None):
+        """Run a Python to its end; without `variables` with nothing of another Python around it."""
+        variables = variables or self.variables()
+        return subprocess.run(command, env=variables, capture_output=True, encoding="utf-8", errors="replace")

@@ -3,6 +3,7 @@
 import os
 import platform
 import re
+import sys
 import sysconfig
 import tomllib
 from pathlib import Path
@@ -34,9 +35,43 @@ def from_output(output, code, folder, log):
     lines = [line.strip() for line in output.splitlines() if line.strip() and "404 Client Error" not in line]
     errors = [line for line in lines if re.match(r"(ERROR|error|Error|\w*Error):", line)]
     said = re.sub(r"^(ERROR|error|Error): *", "", (errors or lines or ["no output"])[-1]).rstrip(".")
-    return _known("\n".join([*lines, f"exit code {code}"]), folder) or SetUpError(
+    problem = _known("\n".join([*lines, f"exit code {code}"]), folder) or SetUpError(
         f"The set-up failed: {said}. All that was printed is in {log}; then run '{COMMAND}' again."
     )
+    addresses = re.findall(r"https?://[^\s'\"`<>),]+", "\n".join(errors or lines[-5:]))
+    tried = f" Address tried last: {_without_password(addresses[-1])}." if addresses else ""
+    return type(problem)(f"{problem}{tried}{in_force(folder)}")
+
+
+def in_force(folder):
+    """A sentence on the settings and files of pip, uv and proxies that are in force; "" if there are none."""
+    found = [
+        f"{name}={_without_password(value)}"
+        for name, value in sorted(os.environ.items())
+        if value and re.match(r"(UV|PIP)_|(HTTPS?|ALL)_PROXY$|SSL_CERT_FILE$", name, re.IGNORECASE)
+    ]
+    roots = (Path.home() / ".config", Path(os.environ.get("APPDATA", "/etc")), Path("/etc"), Path.home() / ".pip")
+    files = [Path(folder, "uv.toml")]
+    files += [root / name for root in roots for name in ("uv/uv.toml", "pip/pip.conf", "pip/pip.ini", "pip.conf")]
+    found += [str(file) for file in dict.fromkeys(files) if file.is_file()]
+    return f" Settings in force that could be the cause: {', '.join(found)}." if found else ""
+
+
+def _without_password(text):
+    return re.sub(r"//[^/@\s]+@", "//...@", text)
+
+
+def _python_that_fits():
+    """Which Python to use instead, "" if this one is right and something else is the cause."""
+    machine = platform.machine().lower()
+    if sys.maxsize < 2**32:
+        return "This Python is a 32-bit one: use a 64-bit Python 3.11 to 3.14 from https://www.python.org/downloads/."
+    if (platform.system(), machine) == ("Windows", "arm64"):
+        return "On Windows on ARM use the x86-64 installer from https://www.python.org/downloads/."
+    newest = (3, 13) if (platform.system(), machine) == ("Darwin", "x86_64") else (3, 14)
+    if sys.version_info[:2] > newest:
+        return f"Use Python 3.11 to {newest[0]}.{newest[1]} from https://www.python.org/downloads/."
+    return "The set-up needs the packages of PyPI, or an index that has all of them."
 
 
 def _known(text, folder, file=".venv"):
@@ -48,6 +83,7 @@ def _known(text, folder, file=".venv"):
                 folder=folder,
                 file=file,
                 name=found[found.lastindex or 0],
+                fitting=_python_that_fits(),
                 python=_PYTHON,
                 command=COMMAND,
                 version=sysconfig.get_python_version(),

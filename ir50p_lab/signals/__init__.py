@@ -5,9 +5,9 @@ Every reference `target` is frozen and answers `target(t)` -> (q, qd, qdd) and `
 Names are loaded on first use: importing this package costs nothing.
 """
 
-import lazy_loader
+from ir50p_lab import lazy
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "fourier": ["Fourier", "at_rest", "fourier"],

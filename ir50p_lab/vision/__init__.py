@@ -5,9 +5,9 @@ the top left one; camera axes are x right, y down, z forward. Names are loaded o
 costs nothing, and OpenCV is loaded only by what uses it.
 """
 
-import lazy_loader
+from ir50p_lab import lazy
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submodules=["camera", "rendering"],
     submod_attrs={

@@ -15,7 +15,7 @@ def report(project, found=None, **options):
     """(exit code, report, verdict) of the doctor within this process; found: in the place of what the inventory finds."""
     environment = Environment(project.root)
     if found:
-        environment.look_inside = lambda python=None: (found, "")
+        environment.look_inside = lambda here=False: (found, "")
     with contextlib.redirect_stdout(io.StringIO()) as said:
         code = doctor.report(environment, **options)
     return code, said.getvalue(), said.getvalue().splitlines()[-1]

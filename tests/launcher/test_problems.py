@@ -147,7 +147,9 @@ PRINTED = [
         "Ignoring indexes: https://pypi.org/simple\nLooking in links: /w\nERROR: No matching distribution found for a==1",
         "has no a==1 for Python",
     ),
-    ("ERROR: No matching distribution found for llvmlite==0.50.0", "Use a 64-bit Python 3.11 to 3.14"),
+    ("ERROR: No matching distribution found for llvmlite==0.50.0", "no ready-made package llvmlite==0.50.0"),
+    ("cause: you require numpy{python_full_version >= '3.11'}==2, we can conclude", "no ready-made package numpy for"),
+    ("ERROR: Could not fetch URL https://me:secret@a.example/simple/: no", "tried last: https://...@a.example/simple/"),
     ("ERROR: six has an invalid wheel, .dist-info directory not found", "A downloaded package is damaged"),
     ("Error: Command '[...]' returned: No module named ensurepip", "came without its modules"),
     ("Collecting six\nERROR: Something nobody has thought of.\n", "Something nobody has thought of. All that"),
@@ -200,6 +202,23 @@ def test_what_pip_prints_becomes_one_line(output, expected):
     assert expected in text
     assert "\n" not in text
     assert problems.COMMAND in text or "https://" in text or "README.md" in text  # what to do next
+
+
+def test_settings_in_force_are_named(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("UV_EXCLUDE_NEWER", "2024-01-01")
+    monkeypatch.setenv("PIP_CONSTRAINT", "../two.txt")
+    (tmp_path / "uv.toml").touch()
+    text = str(problems.from_output("ERROR: No matching distribution found for basalt==2.0", 1, tmp_path, "log"))
+    for setting in ("UV_EXCLUDE_NEWER=2024-01-01", "PIP_CONSTRAINT=../two.txt", str(tmp_path / "uv.toml")):
+        assert setting in text
+    assert "64-bit" not in text
+
+
+def test_a_32_bit_python_is_told_to_be_one(monkeypatch):
+    monkeypatch.setattr(problems.sys, "maxsize", 2**31 - 1)
+    error = problems.from_output("ERROR: No matching distribution found for basalt==2.0", 1, Path("lab"), Path("log"))
+    assert "This Python is a 32-bit one: use a 64-bit Python 3.11 to 3.14" in str(error)
 
 
 def test_another_end_of_uv_is_no_missing_package():

@@ -1,8 +1,8 @@
 """The student's lab book: predictions, notes and figures; beside it results, claims and progress."""
 
-import lazy_loader
+from ir50p_lab import lazy
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "predictions": ["change", "keep", "measured", "note", "now", "path", "predict", "read", "why"],

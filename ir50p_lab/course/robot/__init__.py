@@ -1,5 +1,5 @@
 """What the student owns: the functions of `my_robot`, in which order and where they lie, and the arm they are about."""
 
-import lazy_loader
+from ir50p_lab import lazy
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(__name__, submodules=["my_robot"])
+__getattr__, __dir__, __all__ = lazy.attach(__name__, submodules=["my_robot"])

@@ -1,0 +1,38 @@
+"""Names loaded on first use keep the cause when that fails, and name a file that hides a package."""
+
+import subprocess
+import sys
+
+import pytest
+
+CAUSES = {
+    "cv2": "raise AttributeError('_ARRAY_API not found')",
+    "numba": "raise AttributeError(\"module 'numpy' has no attribute 'long'\")",
+    "anywidget": "raise ImportError('DLL load failed')",
+}
+USERS = {
+    "cv2": "from ir50p_lab.vision import calibrate",
+    "numba": "from ir50p_lab.modelling import mass_matrix",
+    "anywidget": "from ir50p_lab.course import LiveArm",
+}
+
+
+def last_line(code, folder):
+    variables = {"PYTHONPATH": f"{folder}:{':'.join(path for path in sys.path if path)}", "PATH": "/usr/bin:/bin"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=folder, env=variables, capture_output=True, encoding="utf-8"
+    )
+    return done.stderr.splitlines()[-1]
+
+
+@pytest.mark.parametrize("package", CAUSES)
+def test_the_cause_is_kept_and_the_file_that_hides_a_package_is_named(tmp_path, package):
+    (tmp_path / f"{package}.py").write_text(CAUSES[package])
+    said = last_line(USERS[package], tmp_path)
+    assert said.startswith("ir50p_lab.errors.DependencyError: ")
+    assert CAUSES[package].split("(")[1].strip("')\"")[:20] in said
+    assert f"{package}.py hides the package {package}: rename it" in said
+
+
+def test_a_name_that_does_not_exist_is_told_as_ever(tmp_path):
+    assert "cannot import name 'calibrato'" in last_line("from ir50p_lab.vision import calibrato", tmp_path)
