@@ -50,7 +50,6 @@ def test_axes_taken_from_the_joints_own_frames_are_wrong_for_joints_1_and_3(arm)
     assert [np.allclose(literal[:, k], truth[:, k], atol=1e-8) for k in range(3)] == [False, True, False]
 
 
-
 def test_matrices_on_the_way_are_no_rotations_or_give_another_axis():
     right = Matrix([[1, 0, 0], [0, cos(pi / 2), -sin(pi / 2)], [0, sin(pi / 2), cos(pi / 2)]])
     wrong = printed.Rot_x_1_51()
