@@ -14,7 +14,7 @@ from ir50p_lab.inputs import number, numbers
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
-from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel, same_shape
+from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel, same_shape, warn_of_degrees
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value; an Arm carries its own
 
@@ -54,7 +54,9 @@ def _evaluate(function, arm, g=None, **vectors):
         constants = arm, STANDARD_GRAVITY
     else:
         constants = as_theta(arm, g)
-    return evaluate(function, constants, lambda: as_theta(arm, g), **vectors)
+    result = evaluate(function, constants, lambda: as_theta(arm, g), **vectors)
+    warn_of_degrees(arm, vectors["q"], stacklevel=4)
+    return result
 
 
 @jit()
