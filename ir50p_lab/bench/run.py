@@ -47,13 +47,13 @@ class Run:
                 continue
             if cycle >= cycles:
                 return None
-            t, counts, tripped = bench._measure(cycle, drive=pace.armed)
+            t, counts, tripped = bench.measure(cycle, drive=pace.armed)
             pace.armed = pace.armed or cycle > 0
             if self.paused(WATCHDOG * tripped):  # commands were lost on the wire
                 continue
-            sample = self.row = bench._last = Sample(t, bench._radians(counts), counts, pace.missed)
+            sample = self.row = bench.last = Sample(t, bench.radians(counts), counts, pace.missed)
             if self.guard is not None:
-                self.guard.check(sample, bench._pwm)
+                self.guard.check(sample, bench.command)
             rows = None
             if self.reference is not None:
                 rows = checked_reference(bench.arm, t, self.reference(t), sample.q if bench.answers else None)
@@ -73,10 +73,10 @@ class Run:
         self.trips += 1
         said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
         bench.note(said + "; the run was ended" * ended, when)
-        bench._pwm = np.zeros(JOINTS)
+        bench.command = np.zeros(JOINTS)
         with contextlib.suppress(BenchError) if ended else contextlib.nullcontext():
-            t, counts, _ = bench._measure(pace.cycle, drive=False)
-            bench._last = self.row = Sample(t, bench._radians(counts), counts, pace.missed)
+            t, counts, _ = bench.measure(pace.cycle, drive=False)
+            bench.last = self.row = Sample(t, bench.radians(counts), counts, pace.missed)
         if ended:
             paused = f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on"
             remedy = "start a new run, without plots or input in its loop, or use bench.start(...)"
@@ -90,7 +90,7 @@ class Run:
         """Record the last sample with the command that has followed it."""
         sample, aim, self.row, self.aim = self.row, self.aim, None, None
         if sample is not None and self.recorder is not None:
-            self.recorder.write(sample, self.bench._pwm, aim, self.bench._gripper)
+            self.recorder.write(sample, self.bench.command, aim, self.bench.gripper)
 
     def end_recording(self):
         """What comes in this run from now on is not recorded."""
@@ -102,4 +102,4 @@ class Run:
         finally:
             recorder, self.recorder = self.recorder, None
             if recorder is not None:
-                recorder.close(self.bench._statistics(self))
+                recorder.close(self.bench.timing(self))

@@ -334,7 +334,7 @@ def test_a_camera_that_dies_cuts_the_drive():
     locator.look = unplugged
     with pytest.raises(CameraError), bench:
         reach(bench, locator)
-    assert (bench._pwm == 0).all()
+    assert (bench.command == 0).all()
 
 
 class Real:
@@ -369,7 +369,7 @@ def test_a_real_arm_does_not_reach_for_a_rendered_ball():
             bench.simulated, bench.realtime = False, True  # the camera says nothing, its picture does
             task(reacher)
         bench.simulated, bench.realtime = True, False
-        assert (bench._pwm == 0).all()
+        assert (bench.command == 0).all()
         assert np.abs(bench.plant.q_true - before).max() < 0.05
 
 

@@ -133,12 +133,12 @@ def make(fault, bench):
         counts = plant.counts
         plant.counts = lambda: np.array([1023.0, *counts()[1:]])
     else:
-        bench._measure = lambda cycle, drive: _gone(bench)
+        bench.measure = lambda cycle, drive: _gone(bench)
 
 
 def _gone(bench):
     """A pulled cable: the board hears nothing more, and cuts the drive by itself after 0.1 s."""
-    bench.plant.advance(bench._pwm, 0.1)
+    bench.plant.advance(bench.command, 0.1)
     raise BoardLostError(
         "the board is gone: it brakes by itself 0.1 s after the last command, then gravity has the arm"
     )
