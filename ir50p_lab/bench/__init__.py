@@ -10,6 +10,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "connect": ["connect"],
         "recording": ["Recording"],
         "replay": ["ReplayBench"],
+        "rest": ["rest_pose"],
         "serial_bench": ["SerialBench"],
         "simulated": ["SimulatedBench"],
         "simulated_arm": ["SimulatedArm"],

@@ -5,6 +5,7 @@ From below: `draw`, `lab_book`, `printed` (the thesis' equations), `robot` (what
 """
 
 from ir50p_lab import home, lazy
+from ir50p_lab.browser_tab import IN_BROWSER  # noqa: F401
 
 home.check_folder()
 
@@ -13,11 +14,18 @@ __getattr__, __dir__, __all__ = lazy.attach(
     submod_attrs={
         "checking.check": ["check", "reset"],
         "checking.numbers": ["solution"],
+        "draw.arm3d": ["ArmView"],
+        "draw.drawings": ["Drawing", "drawing"],
+        "draw.style": ["new_figure", "subplots"],
+        "draw.traces": ["curves"],
+        "draw.widgets": ["live", "slider"],
         "lab_book.claims": ["ClaimError", "claim"],
         "lab_book.data_file": ["data_file"],
         "lab_book.predictions": ["helped_by", "keep", "measured", "note", "partners", "predict", "why"],
         "lab_book.results": ["arm_that_answers", "load_result", "results", "save_result"],
         "live_arm": ["LiveArm"],
+        "live_arm.badge": ["badge_of"],
+        "live_arm.step_through": ["step_through"],
         "loops.rehearse": ["RehearsalError", "rehearse"],
         "robot": ["my_robot"],
         "robot.parts": ["parts"],

@@ -76,6 +76,18 @@ def code_cells_show_something(path, notebook):
         assert following.cell_type == "code" or lines(cell) <= 2, cell.source
 
 
+def imports_are_few_and_from_the_rooms_themselves(path, notebook):
+    """From at most six modules of the package, views from one room, and never from inside a room."""
+    trees = [ast.parse(cell.source) for cell in cells(notebook, "code")]
+    nodes = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    modules = {node.module for node in nodes if node.module.startswith("ir50p_lab")}
+    depth = {name: name.count(".") for name in modules}
+    deep = [name for name in modules if depth[name] > (2 if name.startswith("ir50p_lab.course.") else 1)]
+    assert not deep, "take it from the face of its room"
+    assert len(modules) <= 6, modules
+    assert sum(count == 2 for count in depth.values()) <= 1, "views come from one room"
+
+
 def functions_are_asked_for_in_their_notebook(path, notebook):
     asked = tuple(name for name in checked(notebook) if is_function(name))
     assert asked == tuple(one for name in FUNCTIONS.get(path.name[:2], ()) for one in (*STAGES.get(name, ()), name))
@@ -266,6 +278,7 @@ RULES_OF_THE_LAB_BOOK = (
     functions_are_asked_for_in_their_notebook,
     sections_are_marked,
     core_meets_no_gap,
+    imports_are_few_and_from_the_rooms_themselves,
 )
 
 

@@ -105,7 +105,7 @@ def friction(arm, *, kp=150.0, ki=20.0, duration=10):
 
 def noise(arm, *, filter_hz=np.inf):
     """The measured angle, with a D that hears every count."""
-    from ir50p_lab.course.loops.contest import PRACTICE, drive
+    from ir50p_lab.course.loops.contest_rules import PRACTICE, drive
 
     pid = PID(FIRM_KP, ki=FIRM_KI, kd=60, limit_pwm=255, filter_hz=filter_hz)
     return drive(pid, PRACTICE[0], arm)[1]

@@ -6,7 +6,7 @@ from ir50p_lab.controllers import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.course.draw.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.course.draw.widgets import slider
-from ir50p_lab.course.loops import contest
+from ir50p_lab.course.loops import contest_rules as contest
 from ir50p_lab.errors import LabError
 
 _SLIDERS = {"kp": (2000, 10), "ki": (3000, 10), "kd": (60, 0.5)}  # right end, step

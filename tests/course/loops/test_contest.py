@@ -9,7 +9,7 @@ import solutions
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import lab_book
-from ir50p_lab.course.loops import contest as jury
+from ir50p_lab.course.loops import contest_rules as jury
 from ir50p_lab.modelling import IR50P, forward_kinematics, load_arm
 
 UNITS = range(7000, 7020)  # seeds nobody tuned on

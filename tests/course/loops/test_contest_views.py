@@ -6,7 +6,8 @@ import solutions
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import lab_book
-from ir50p_lab.course.loops import contest, contest_views
+from ir50p_lab.course.loops import contest_rules as contest
+from ir50p_lab.course.loops import contest_views
 from ir50p_lab.modelling import IR50P
 
 GAINS = {f"{part}{joint}": value for part, value in (("kp", 900), ("ki", 800), ("kd", 5)) for joint in (1, 2, 3)}
