@@ -1,5 +1,6 @@
 """How good a model is on data it has not seen, as Table 4.4 on raw PWM; and whether its residuals are white."""
 
+from collections import namedtuple
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,17 +89,12 @@ def compared(t, measured, predicted, of):
     return Validation(rms=rms, fit=fit, t=t, measured=measured, predicted=predicted, of=of)
 
 
-@dataclass(frozen=True, eq=False)
-class Whiteness:
+class Whiteness(namedtuple("Whiteness", "lags correlation bound")):
     """Autocorrelation of residuals, column by column.
 
     lags (m,) samples; correlation (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
     if the residuals are white: what a good model leaves is noise, which no earlier sample predicts.
     """
-
-    lags: np.ndarray
-    correlation: np.ndarray
-    bound: float
 
 
 def whiteness(residuals):
