@@ -80,10 +80,10 @@ def validate(estimate, recording, q=None, u=None, *, derivatives=BOTH, cutoff_hz
     inside = (acts >= motion.t[after - 1]) & (acts <= motion.t[after])
     inside &= motion.segment[after] == motion.segment[after - 1]
     found = np.column_stack([np.interp(acts[inside], motion.t, p) for p in predicted.T])
-    return compared(t[inside], u[inside], found, "u")
+    return compare_signals(t[inside], u[inside], found, "u")
 
 
-def compared(t, measured, predicted, of):
+def compare_signals(t, measured, predicted, of):
     """Validation of "u" or "q", (n, 3) each."""
     rms, fit = nrmse_fit(measured, predicted)
     return Validation(rms=rms, fit=fit, t=t, measured=measured, predicted=predicted, of=of)
