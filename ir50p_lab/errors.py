@@ -10,7 +10,7 @@
     ├─ VisionError                 ImageError *, CameraError, CalibrationError *
     ├─ DependencyError             a package that the lab book uses cannot be loaded
     └─ WrongFolderError            the kernel runs in another copy of the course
-    UserWarning                    SuspiciousArmWarning, UnstableLoopWarning
+    UserWarning                    SuspiciousArmWarning, SuspiciousAngleWarning, UnstableLoopWarning
 
 Beside what raises them stand LabBookError, RehearsalError and NotInABrowserError, all LabErrors, ClaimError (an
 AssertionError) and RecordingWarning (a UserWarning).
@@ -47,6 +47,10 @@ class IdentificationError(LabError, ValueError):
 
 class SuspiciousArmWarning(UserWarning):
     """Arm parameters that are possible but hardly meant (a unit slip, a misprint)."""
+
+
+class SuspiciousAngleWarning(UserWarning):
+    """Angles more than a turn beyond the arm's limits: they may be in degrees."""
 
 
 class UnstableLoopWarning(UserWarning):

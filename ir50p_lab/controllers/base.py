@@ -1,6 +1,7 @@
 """What a controller is: numbers in two arrays and one compiled function that all loops share."""
 
 import math
+import warnings
 
 import numpy as np
 
@@ -83,9 +84,14 @@ class Controller:
         """The command for one sample.
 
         Args: t: s; measured: q (3,) rad; reference: (q, qd, qdd), three vectors (3,) or an array (3, 3).
-        Returns: u (3,), in `unit`, after limits. Raises InputError if a number is not finite.
+        Returns: u (3,), in `unit`, after limits. Raises InputError if a number is not finite; warns where t runs
+            backwards.
         """
         u = np.empty(3)
+        if self.state[law.STARTED] and t < self.state[law.TIME]:
+            before = self.state[law.TIME]
+            said = f"t = {t:.6g} s after {before:.6g} s: time runs backwards, and this step counts as none"
+            warnings.warn(f"{said}; call reset() before another run", stacklevel=2)
         law.law_step(self.parameters, self.state, float(t), _plain(measured), _plain_rows(reference), u)
         if not math.isfinite(u[0] + u[1] + u[2]):
             vectors3("measured q", measured)

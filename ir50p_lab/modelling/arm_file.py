@@ -43,7 +43,9 @@ def read_arm(cls, path):
         data = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise ArmError(f"cannot read the arm file {path}: {error.strerror}; check the path or IR50P_ARM") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except UnicodeDecodeError:
+        raise ArmError(f"{path} is not in UTF-8: open it in an editor and save it with the encoding UTF-8") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise ArmError(f"{path} is not a TOML file: {error}. Write one with Arm.save and edit it") from None
     try:
         parts = {name: _make(part, data.pop(name)) for name, part in _PARTS.items() if name in data}

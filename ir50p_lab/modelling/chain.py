@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vector3, vectors3, whole
-from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel
+from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel, warn_of_degrees
 
 _COS_ALPHA = (0.0, 1.0, 0.0)  # of the twists of Table 1.1, exact where cos(pi/2) in floating point is 6e-17
 _SIN_ALPHA = (1.0, 0.0, -1.0)
@@ -56,6 +56,7 @@ def frames(arm, q):
     """
     l1, l2, l3 = lengths(arm)
     q = vectors3("q", q)
+    warn_of_degrees(arm, q)
     T = np.empty((*q.shape[:-1], 4, 4, 4))
     T[..., 0, :, :] = np.eye(4)
     for i, (d, a) in enumerate(((l1, 0.0), (0.0, l2), (0.0, l3))):
@@ -93,4 +94,6 @@ def forward_kinematics(arm, q):
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (3,) or (n, 3) m. The orientation is `frames(arm, q)[..., 3, :3, :3]`.
     """
-    return evaluate(_tip, (lengths(arm),), q=q)
+    p = evaluate(_tip, (lengths(arm),), q=q)
+    warn_of_degrees(arm, q)
+    return p

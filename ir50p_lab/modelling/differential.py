@@ -4,7 +4,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling.chain import lengths
-from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel
+from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel, warn_of_degrees
 
 
 @kernel("(n),(m),(n)->(m,n)")
@@ -34,4 +34,6 @@ def jacobian(arm, q):
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (6, 3) or (n, 6, 3); rows 0-2 in m/rad (Jv), rows 3-5 without unit (Jw).
     """
-    return evaluate(_jacobian, (lengths(arm), _SIX), q=q)
+    J = evaluate(_jacobian, (lengths(arm), _SIX), q=q)
+    warn_of_degrees(arm, q)
+    return J

@@ -5,7 +5,7 @@ counts the results are in PWM counts too. An Arm carries its gravity; a theta do
 option `g`. The equations are in `closed_form`.
 """
 
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ir50p_lab.inputs import number, numbers
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
-from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel, same_shape
+from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel, same_shape, warn_of_degrees
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value; an Arm carries its own
 
@@ -54,7 +54,9 @@ def _evaluate(function, arm, g=None, **vectors):
         constants = arm, STANDARD_GRAVITY
     else:
         constants = as_theta(arm, g)
-    return evaluate(function, constants, lambda: as_theta(arm, g), **vectors)
+    result = evaluate(function, constants, lambda: as_theta(arm, g), **vectors)
+    warn_of_degrees(arm, vectors["q"], stacklevel=4)
+    return result
 
 
 @jit()
@@ -167,12 +169,8 @@ def forward_dynamics(arm, q, qd, tau, *, g=None):
     return _evaluate(_forward, arm, g, q=q, qd=qd, tau=tau)
 
 
-@dataclass(frozen=True)
-class Energy:
+class Energy(namedtuple("Energy", "kinetic potential")):
     """Kinetic and potential energy, J; arrays of shape () or (n,)."""
-
-    kinetic: np.ndarray
-    potential: np.ndarray
 
     @property
     def total(self):

@@ -1,15 +1,18 @@
 """One state or many: functions of one state as NumPy's generalised ufuncs, and the errors they raise."""
 
 import re
+import warnings
 from contextlib import nullcontext
 from functools import cache
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import InputError, SuspiciousAngleWarning
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.launcher.file_lock import take_lock
 
+_TURN = 2 * np.pi
+_NO_LIMITS = (np.inf, np.inf, np.inf)
 NOT_FINITE = "the result is not finite: the numbers are too large"
 
 
@@ -73,6 +76,19 @@ def evaluate(kernel, constants, check=None, /, **vectors):
         pass
     with np.errstate(all="ignore"):
         return kernel()(*(check() if check else constants), *same_shape(**vectors))
+
+
+def warn_of_degrees(arm, q, *, stacklevel=3):
+    """Warn of angles q (..., 3) more than a turn beyond the arm's limits (of an arm without limits: beyond four)."""
+    q = np.asarray(q)
+    if q.size == 3 and np.vdot(q, q) < _TURN**2:  # the usual case, at no cost
+        return
+    limits = np.maximum(np.negative(getattr(arm, "q_min", _NO_LIMITS)), getattr(arm, "q_max", _NO_LIMITS))
+    beyond = np.abs(q) - np.where(np.isfinite(limits), limits, 3 * _TURN)
+    if (beyond > _TURN).any():
+        angle = q.flat[np.argmax(beyond)]
+        said = f"q has {angle:.4g}, more than a turn beyond the arm's limits: angles are in radians"
+        warnings.warn(f"{said} (np.radians turns degrees into them)", SuspiciousAngleWarning, stacklevel=stacklevel)
 
 
 def same_shape(**vectors):

@@ -8,9 +8,10 @@ from ir50p_lab.controllers.base import Controller, is_compiled
 from ir50p_lab.controllers.pid import PID
 from ir50p_lab.errors import InputError, UnstableLoopWarning
 from ir50p_lab.inputs import number, vector3
+from ir50p_lab.modelling.kernel import warn_of_degrees
 from ir50p_lab.signals.steps import hold
 from ir50p_lab.simulation.plant import make_plant
-from ir50p_lab.simulation.result import SimulationResult
+from ir50p_lab.simulation.simulation_result import SimulationResult
 from ir50p_lab.simulation.stability import looks_unstable
 
 
@@ -58,6 +59,7 @@ def simulate(
     plant = make_plant(arm, unit=unit, stops=stops, table=table, g=g)
     target = _target(reference, q0)
     r = sampled(target, t)
+    warn_of_degrees(arm, np.vstack([q0, r[:, 0]]))
     x = np.concatenate([q0, qd0])
     q, qd, u = np.empty((3, len(t), 3))
     if getattr(controller, "continuous", False):

@@ -144,6 +144,7 @@ class WrongSign:
         return inverse_dynamics(self.theta, measured, qd - rate, qdd - self.kd * rate - self.kp * e)
 
 
+@pytest.mark.filterwarnings("ignore::ir50p_lab.errors.SuspiciousAngleWarning")
 def test_the_printed_sign_runs_away():
     near = quintic(ZERO, (0.5, 0.5, -0.5), duration=2)
     right = ComputedTorque(THESIS_RODS, 25, 10, filter_hz=np.inf, period=0.001)

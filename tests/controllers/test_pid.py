@@ -74,7 +74,7 @@ def test_no_derivative_kick_on_the_measurement_and_one_on_the_error():
     for on, kick in (("measurement", False), ("error", True)):
         pid = PID(kp=(1, 1, 1), kd=(1, 1, 1), filter_hz=np.inf, derivative_on=on)
         run(pid, np.zeros((5, 3)))
-        u = pid.step(0.05, ZERO, hold(1, 1, 1))
+        u = pid.step(0.05, np.zeros(3), hold(1, 1, 1))
         assert (u > 50).all() if kick else (u == 1).all()
 
 
@@ -149,14 +149,15 @@ def test_after_a_pause_the_speed_is_taken_over_its_true_length(pause):
 def test_a_late_cycle_is_integrated_over_its_true_length():
     pid = PID(kp=(0, 0, 0), ki=(1, 1, 1))
     pid.step(0.0, ZERO, hold(1, 1, 1))
-    np.testing.assert_allclose(pid.step(0.05, ZERO, hold(1, 1, 1)), 0.01 + 0.05)
+    np.testing.assert_allclose(pid.step(0.05, np.zeros(3), hold(1, 1, 1)), 0.01 + 0.05)
 
 
+@pytest.mark.filterwarnings("ignore:t = 59")
 def test_after_a_long_pause_the_integral_takes_ten_periods_at_most_and_time_never_runs_back():
     pid = PID(kp=(0, 0, 0), ki=(1, 1, 1))
     pid.step(0.0, ZERO, hold(1, 1, 1))
-    np.testing.assert_allclose(pid.step(60.0, ZERO, hold(1, 1, 1)), 0.01 + 0.10)
-    np.testing.assert_allclose(pid.step(59.0, ZERO, hold(1, 1, 1)), 0.01 + 0.10)
+    np.testing.assert_allclose(pid.step(60.0, np.zeros(3), hold(1, 1, 1)), 0.01 + 0.10)
+    np.testing.assert_allclose(pid.step(59.0, np.zeros(3), hold(1, 1, 1)), 0.01 + 0.10)
 
 
 def radius(arm, q, kp, kd, period):
@@ -222,3 +223,12 @@ def test_header_says_gains_and_filters():
         "position_filter_hz": "3",
     }
     assert PID(kp=1, filter_hz=np.inf).header()["filter_hz"] == PID(kp=1).header()["position_filter_hz"] == "inf"
+
+
+def test_time_that_runs_backwards_is_said():
+    pid = PID(kp=1, kd=1)
+    pid.step(5.0, ZERO, hold(0, 0, 0))
+    with pytest.warns(UserWarning, match=r"t = 4\.99 s after 5 s: time runs backwards"):
+        pid.step(4.99, ZERO, hold(0, 0, 0))
+    pid.reset()
+    pid.step(0.0, ZERO, hold(0, 0, 0))  # another run: no word

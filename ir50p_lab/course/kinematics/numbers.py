@@ -49,7 +49,10 @@ NUMBERS = (
         slips={
             "That is Jv^T qd: columns belong to joints, so Jv stands on the left as it is.": _JV.T @ _QD,
             "Rows 1 and 2 came out the same: that is the derivative of the printed (1.45).": _JV[[0, 0, 2]] @ _QD,
-            "The pose went in as degrees; the functions take radians.": jacobian(IR50P, np.rad2deg(_Q))[:3] @ _QD,
+            "The pose went in as degrees; the functions take radians.": jacobian(IR50P, np.rad2deg(_Q) % (2 * np.pi))[
+                :3
+            ]
+            @ _QD,
             "The rates are in rad/s already; they were converted once too often.": _JV @ np.deg2rad(_QD),
             "That is how fast the hand turns (rows 4 to 6), not how fast it moves.": jacobian(IR50P, _Q)[3:] @ _QD,
         },

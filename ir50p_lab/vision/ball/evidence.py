@@ -7,7 +7,7 @@ that speaks most against a ball is given as the reason.
 import cv2
 import numpy as np
 
-from ir50p_lab.vision.ball.outline import ANGLES, cast
+from ir50p_lab.vision.ball.rays import ANGLES, cast
 
 _BIAS = 5.32  # log odds of a ball if all numbers are 0
 _AGAINST = (  # how much log odds 1 of each number takes away, and the reason given if it takes most
