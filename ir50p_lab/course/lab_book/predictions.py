@@ -44,7 +44,7 @@ def predict(name, guess, unit="", *more, within=0.1, choices=()):
     not count. Until it is measured, a guess may be replaced once; one that comes later is shown, but does not count.
 
     Args: guess: a number. within: how far it may be off before `measured` asks why, as a share of what is measured.
-    choices: numbers of which the guess has to be one, or {number: what it means}. more: what a decimal comma leaves over.
+    choices: numbers of which the guess is one, or {number: what it means}. more: what a decimal comma leaves over.
     """
     if refusal := _refusal(guess, unit, more, choices):
         print(f"{name}: {refusal}")

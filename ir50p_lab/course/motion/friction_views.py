@@ -1,4 +1,4 @@
-"""Notebook 07: what drags the waist, the picture of what it found, a lift at full push, and what serves until the student's own lines do."""
+"""Notebook 07: what drags the waist, its picture, a lift, and what serves until the student's own lines do."""
 
 from dataclasses import replace
 from types import SimpleNamespace
