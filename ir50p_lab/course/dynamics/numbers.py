@@ -13,7 +13,7 @@ _BEST = np.sqrt(_LOAD / _ROTOR)
 _POSE, _STALL = np.radians([0, 30, -60]), 7.0  # rad, N m
 _PER_KG, _STRETCHED = IR50P.g * jacobian(IR50P, _POSE)[2, 1], IR50P.g * IR50P.reach  # N m/kg
 _HEAVIEST = (_STALL - gravity(IR50P, _POSE)[1]) / _PER_KG
-_DEGREES = [0, 30, -60]  # taken for radians
+_DEGREES = np.remainder([0, 30, -60], 2 * np.pi)  # taken for radians
 _BY_DEGREES = (_STALL - gravity(IR50P, _DEGREES)[1]) / (IR50P.g * jacobian(IR50P, _DEGREES)[2, 1])
 
 NUMBERS = (
