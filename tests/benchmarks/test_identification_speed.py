@@ -6,9 +6,8 @@ Ratios, not times, are what counts: the machine is the same for both. The target
 import time
 
 import numpy as np
-import pytest
 
-from ir50p_lab.identification import RLS, fit, regressor
+from ir50p_lab.identification import fit, regressor
 from ir50p_lab.modelling import IR50P
 
 N = 11_000  # 110 s at 100 Hz, as the thesis
@@ -96,18 +95,3 @@ def test_ratio_to_the_peer(request):
     )
     if enabled:
         assert theirs > 2 * ours, "half the target: something is broken, not just a busy machine"
-
-
-@pytest.mark.parametrize("rows", ["shared", "joint"])
-def test_rls_speed(request, rows):
-    n = 10_000 if request.config.getoption("benchmark_enable") else 200
-    q, qd, qdd, y = measured(n)
-    Phi = regressor(q, qd, qdd)
-    columns = "thesis" if rows == "shared" else "rigid"
-
-    def run():
-        return RLS(rows=rows, columns=columns).run(Phi, y)
-
-    seconds = best_of(run, 7) / n
-    print(f"\nRLS, {rows}, 3 x 20 block: {seconds * 1e6:.0f} us a sample (target 100 us, a hundredth of a period)")
-    assert np.isfinite(run()).all()
