@@ -20,9 +20,9 @@ import cloudpickle
 import numpy as np
 
 from ir50p_lab.bench import loop_process
+from ir50p_lab.bench.limits import MOST_PUSH, checked_pose, checked_push, checked_reference
 from ir50p_lab.bench.live_loop import ENDED, LEADING, RUNNING, STARTING, live_loop
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.set_point import MOST_PUSH, checked_pose, checked_push, checked_reference
 from ir50p_lab.browser_tab import IN_BROWSER, needs_more
 from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError

@@ -5,9 +5,9 @@ from collections import namedtuple
 
 import numpy as np
 
+from ir50p_lab.bench.limits import checked_reference
 from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, cut_said
 from ir50p_lab.bench.protocol import JOINTS
-from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.errors import BenchError, PauseError
 
 
@@ -24,12 +24,12 @@ class Run:
     """What belongs to one run.
 
     Args: bench: the Bench that it measures and drives; reference: target(t) or None.
-    Attributes: recorder: Recorder or None; pace: Pace or CountedPace; guard: see `Bench._make_guard`; row: the Sample
-    whose command may still come, before its row is written; aim: its reference (3,); fault: what has ended it; capped:
-    whether the lab's caps hold, all but that of PWM; trips: of the watchdog.
+    Attributes: recorder: Recorder or None; pace: Pace or CountedPace; guard: see `Bench._make_guard`; open_row: the
+    Sample whose row is not written yet, for its command may still come; aim: its reference (3,); fault: what has ended
+    it; capped: whether the lab's caps hold, all but that of PWM; trips: of the watchdog.
     """
 
-    recorder = pace = guard = row = aim = fault = None
+    recorder = pace = guard = open_row = aim = fault = None
     capped, trips = True, 0
 
     def __init__(self, bench, reference):
@@ -51,7 +51,7 @@ class Run:
             pace.armed = pace.armed or cycle > 0
             if self.paused(WATCHDOG * tripped):  # commands were lost on the wire
                 continue
-            sample = self.row = bench.last = Sample(t, bench.radians(counts), counts, pace.missed)
+            sample = self.open_row = bench.last = Sample(t, bench.radians(counts), counts, pace.missed)
             if self.guard is not None:
                 self.guard.check(sample, bench.command)
             rows = None
@@ -76,7 +76,7 @@ class Run:
         bench.command = np.zeros(JOINTS)
         with contextlib.suppress(BenchError) if ended else contextlib.nullcontext():
             t, counts, _ = bench.measure(pace.cycle, drive=False)
-            bench.last = self.row = Sample(t, bench.radians(counts), counts, pace.missed)
+            bench.last = self.open_row = Sample(t, bench.radians(counts), counts, pace.missed)
         if ended:
             paused = f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on"
             remedy = "start a new run, without plots or input in its loop, or use bench.start(...)"
@@ -88,7 +88,7 @@ class Run:
 
     def write_row(self):
         """Record the last sample with the command that has followed it."""
-        sample, aim, self.row, self.aim = self.row, self.aim, None, None
+        sample, aim, self.open_row, self.aim = self.open_row, self.aim, None, None
         if sample is not None and self.recorder is not None:
             self.recorder.write(sample, self.bench.command, aim, self.bench.gripper)
 

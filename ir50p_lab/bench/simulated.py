@@ -7,11 +7,11 @@ import numpy as np
 from ir50p_lab.bench.arm_instance import UNIT
 from ir50p_lab.bench.base import Bench, Sample
 from ir50p_lab.bench.caps import FAULTS, Caps
+from ir50p_lab.bench.limits import FARTHEST, NOBODY, NOISE, checked_push, checked_reference
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import UNDER, UNDER_ALARM, push, tip_height, watch_step
-from ir50p_lab.bench.set_point import FARTHEST, NOBODY, NOISE, checked_push, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
 from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.controllers.law import law_step

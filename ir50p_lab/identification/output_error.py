@@ -7,11 +7,11 @@ import numpy as np
 
 from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES, RIGID_ON, metres
+from ir50p_lab.identification.recording_checks import at_bounds
 from ir50p_lab.identification.regression import least_squares
 from ir50p_lab.identification.time_series import columns_of, sampling_period
-from ir50p_lab.identification.validation import compared
+from ir50p_lab.identification.validation import compare_signals
 from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
 from ir50p_lab.simulation.loops import sampled_loop
@@ -46,7 +46,7 @@ class OutputError:
         """Simulate the loop of another recording: (Validation of "q", Validation of "u")."""
         run = ClosedLoopRun(recording, controller, reference, delay=self.delay)
         q, u = run.simulate(self.theta, self.fs, self.qs)
-        return compared(run.t, run.q, q, "q"), compared(run.t, run.u, u, "u")
+        return compare_signals(run.t, run.q, q, "q"), compare_signals(run.t, run.u, u, "u")
 
 
 class ClosedLoopRun:

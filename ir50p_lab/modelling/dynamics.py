@@ -5,7 +5,7 @@ counts the results are in PWM counts too. An Arm carries its gravity; a theta do
 option `g`. The equations are in `closed_form`.
 """
 
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy as np
 
@@ -169,12 +169,8 @@ def forward_dynamics(arm, q, qd, tau, *, g=None):
     return _evaluate(_forward, arm, g, q=q, qd=qd, tau=tau)
 
 
-@dataclass(frozen=True)
-class Energy:
+class Energy(namedtuple("Energy", "kinetic potential")):
     """Kinetic and potential energy, J; arrays of shape () or (n,)."""
-
-    kinetic: np.ndarray
-    potential: np.ndarray
 
     @property
     def total(self):

@@ -11,7 +11,7 @@ from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.kernel import warn_of_degrees
 from ir50p_lab.signals.steps import hold
 from ir50p_lab.simulation.plant import make_plant
-from ir50p_lab.simulation.result import SimulationResult
+from ir50p_lab.simulation.simulation_result import SimulationResult
 from ir50p_lab.simulation.stability import looks_unstable
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import numbers
-from ir50p_lab.vision.checks import coordinates, picture_size, rigid
+from ir50p_lab.vision.arguments import coordinates, picture_size, rigid
 
 _STEPS = 200  # most iterations that take out distortion: they converge slowly near the radius where it folds back
 

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.board_pose import moved, transform
-from ir50p_lab.vision.calibration.result import LENS, NAMES
+from ir50p_lab.vision.board_pose import transform, transform_points
+from ir50p_lab.vision.calibration.calibration_result import LENS, NAMES
 
 _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 1e-9)
 _BENT = 0.75  # variance of residuals with every corner free over that with a flat board: if less, the board is bent
@@ -115,7 +115,8 @@ def _fit_fisheye(points, pixels, size):
     flags |= cv2.fisheye.CALIB_FIX_SKEW | cv2.fisheye.CALIB_FIX_K3 | cv2.fisheye.CALIB_FIX_K4
     found = cv2.fisheye.calibrate(*views, size, start, np.zeros(4), flags=flags, criteria=_STOP)
     fitted = _camera_fit(found, cv2.fisheye.projectPoints, points, pixels)
-    X, Y, Z = np.concatenate([moved(transform(*pose), p) for p, pose in zip(points, fitted.poses, strict=True)]).T
+    views = zip(points, fitted.poses, strict=True)
+    X, Y, Z = np.concatenate([transform_points(transform(*pose), board) for board, pose in views]).T
     return np.arctan2(np.hypot(X, Y), Z).max(), fitted
 
 

@@ -26,13 +26,11 @@ _EXCESS = 0.025
 # Share of samples at a limit of u: up to the first nothing is tested, then _EXCESS, beyond the second _MISSED.
 _SELDOM, _OFTEN = 0.02, 0.25
 _MISSED = 0.07  # residual over spread of u: if more is left where u is at its limits often, it was clipped
-_NEAR = (
-    5.0  # sampling periods from one neighbour to the other: if they are further apart, motion may look like an outlier
-)
+# Sampling periods from one neighbour to the other: if they are further apart, motion may look like an outlier
+_NEAR = 5.0
 _ONE_SIZE = 0.3  # jumps of x by more than half its range are of one size if they differ by less than this share of it
-_END = (
-    30  # per cent of the values on one side of a jump: so few lie between where the jump ends and the end of the range
-)
+# Per cent of the values on one side of a jump: so few lie between where the jump ends and the end of the range
+_END = 30
 _CONTRADICT = 3.0  # standard errors: if two recordings differ by more, and by 5 %, they contradict each other
 
 
