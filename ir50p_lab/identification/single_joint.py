@@ -269,7 +269,10 @@ def _table(runs, cutoff_hz, sign_hz, slow):
     low pass at sign_hz: a smoother speed changes its sign too early or too late.
     """
     every = np.concatenate([run.u[:, 0] for run in runs])
-    near = min(max(1e-3 * np.ptp(every), _SCATTER * _noise(every)), _NEAR_LIMIT * np.ptp(every))
+    near = min(
+        max(1e-3 * np.ptp(every), _SCATTER * _noise(np.concatenate([run.u[:, 1] for run in runs]))),
+        _NEAR_LIMIT * np.ptp(every),
+    )
     low, high = every.min() + near, every.max() - near
     names = ("columns", "u", "slopes", "limits", "q", "v", "snap", "of")
     parts = []
@@ -348,7 +351,9 @@ def _check_fit(warned, found, others, with_gravity):
     left, gravity = found.left, others.get("gravity", found.left).rms / found.left.rms
     explained = 1 - (found.misfit * gravity) ** 2
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
-    if explained < _EXPLAINED or (F < _F and explained < 0.5):
+    if found.misfit > _POOR and (sentence := checks.without_sign(found)):
+        warned.refuse(sentence)
+    elif explained < _EXPLAINED or (F < _F and explained < 0.5):
         share = f"{max(explained, 0):.1%} of it (F = {F:.1f}, needed {_F:.0f}; too few independent samples?)"
         warned.refuse(f"u does not belong to this motion, which explains {share}: another joint or clock? A spring?")
     elif F < _F:
