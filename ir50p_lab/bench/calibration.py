@@ -113,7 +113,7 @@ class JointCalibration:
 
 
 def _pairs(q, counts):
-    """What was measured at one joint, from its table in a file."""
+    """Return the pairs (angles, counts) of one joint from its table in a file."""
     if np.shape(q) != np.shape(counts):
         raise InputError(f"{len(q)} angles q but {len(counts)} counts of a joint: they belong together in pairs")
     return tuple(q), tuple(counts)

@@ -19,7 +19,8 @@ from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant
 from ir50p_lab.simulation.simulate import sampled
 
 _STEP = 0.02  # share of a parameter's scale, step of numerical derivatives: with less, stiction makes the output jump
-_AT = 0.02  # share of a parameter's scale: what is nearer to its bound stands at it; the search never quite reaches it
+# Share of a parameter's scale: nearer to its bound than this counts as at the bound: the search stops just short
+_AT = 0.02
 _QS = (0.005, 0.5)  # rad/s, bounds of the Stribeck speed
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 _COULOMB = [0, 1, 2], [NAMES.index(name) for name in ("fc1", "fc2", "fc3")]

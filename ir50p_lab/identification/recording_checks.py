@@ -119,7 +119,7 @@ def _check_jumps(warned, name, t, x):
 
 
 def _new(warned, q):
-    """Which samples of q (n,) are new, where a slow sensor repeats its value over several rows; else all True."""
+    """Return which samples of q (n,) are new: a slow sensor repeats its value over several rows."""
     steps = np.abs(np.diff(q))
     moved = np.flatnonzero(steps)
     every = (len(q) - 1) / max(len(moved), 1)

@@ -44,7 +44,7 @@ def circle_in_use(circle, arm, centre, radius, first, lap):
 
 
 def _no_angles(circle, lap, place):
-    """Why circle(t) is no function of the time that gives numbers (3, 3), in a sentence; "" if it is."""
+    """Return why circle(t) does not give numbers (3, 3) that depend on t alone, in a sentence; "" if it does."""
     asked, given = np.r_[np.linspace(0, lap, 9), -1, lap + 1], []
     try:
         for t in (*asked, *asked[::-1]):
@@ -66,7 +66,7 @@ class Filtered:
         self._share = my_robot.low_pass(np.array([0.0, 1.0]), cutoff_hz, 100)[1]  # of a jump, after one sample
 
     def reset(self):
-        """Before a run."""
+        """Forget the run before."""
         self._seen = None
         self.controller.reset()
 
@@ -145,7 +145,7 @@ def _cable_pulled(bench):
 
 
 def after_fault(bench, fault_at=1.0):
-    """What a fault has done: s until the run ended, degrees the waist turned in them, mm the tip has sunk since.
+    """Return s from the fault to the end of the run, degrees the waist turned meanwhile, mm the tip has sunk since.
 
     Of a simulated arm the truth; of a real one what was measured, and nobody knows (nan) how far it sank.
     """

@@ -31,9 +31,9 @@ def counts_by_hand():
 
 
 def error_bands(x, fit, at):
-    """Lines as sure as a fit (slope, offset, covariance), by its diagonal alone and by the whole: LabFigure.
+    """Draw lines from the uncertainty of a fit (slope, offset, covariance): with its diagonal, and with all of it.
 
-    Args: x: (n,) counts, of the readings; at: counts at which the lines are used.
+    Args: x: (n,) counts, of the readings; at: counts at which the lines are used. Returns: LabFigure.
     """
     figure, *axes = subplots(9.0, 3.2, cols=2)
     ends = np.array([min(0, *x), max(x)])
@@ -47,7 +47,7 @@ def error_bands(x, fit, at):
 
 
 def residuals(angles, left):
-    """What lines leave, (n, 3) mrad over angles (n, 3) rad; a parabola shows whether it bows: LabFigure."""
+    """Plot residuals (n, 3) mrad over angles (n, 3) rad, each with a parabola that shows a bow: LabFigure."""
     figure, *axes = subplots(9.0, 2.9, cols=3)
     for ax, q, rest, label in zip(axes, angles.T, left.T, JOINT_LABELS, strict=True):
         ax.axhline(0, **SETPOINT)
