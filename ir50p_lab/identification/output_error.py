@@ -7,11 +7,11 @@ import numpy as np
 
 from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES, RIGID_ON, metres
+from ir50p_lab.identification.recording_checks import at_bounds
 from ir50p_lab.identification.regression import least_squares
 from ir50p_lab.identification.time_series import columns_of, sampling_period
-from ir50p_lab.identification.validation import compared
+from ir50p_lab.identification.validation import compare_signals
 from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
 from ir50p_lab.simulation.loops import sampled_loop
@@ -19,7 +19,8 @@ from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant
 from ir50p_lab.simulation.simulate import sampled
 
 _STEP = 0.02  # share of a parameter's scale, step of numerical derivatives: with less, stiction makes the output jump
-_AT = 0.02  # share of a parameter's scale: what is nearer to its bound stands at it; the search never quite reaches it
+# Share of a parameter's scale: nearer to its bound than this counts as at the bound: the search stops just short
+_AT = 0.02
 _AT_ERRORS = 0.1  # of its standard error: the same
 _QS = (0.005, 0.5)  # rad/s, bounds of the Stribeck speed
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
@@ -47,7 +48,7 @@ class OutputError:
         """Simulate the loop of another recording: (Validation of "q", Validation of "u")."""
         run = ClosedLoopRun(recording, controller, reference, delay=self.delay)
         q, u = run.simulate(self.theta, self.fs, self.qs)
-        return compared(run.t, run.q, q, "q"), compared(run.t, run.u, u, "u")
+        return compare_signals(run.t, run.q, q, "q"), compare_signals(run.t, run.u, u, "u")
 
 
 class ClosedLoopRun:

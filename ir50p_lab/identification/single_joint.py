@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import checks
+from ir50p_lab.identification import recording_checks
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.regression import least_squares
 from ir50p_lab.identification.time_series import columns_of, quantum_of
@@ -131,7 +131,7 @@ def fit_joint(
     if not terms or not set(terms) <= set(TERMS):
         raise InputError(f"terms = {terms!r}: give some of {', '.join(TERMS)}")
     names = [name for name in _COLUMNS if name.split("_")[0] in terms]
-    warned = checks.Warnings(choice("anyway", anyway, (True, False)))
+    warned = recording_checks.Warnings(choice("anyway", anyway, (True, False)))
     recordings, runs = _recordings(t, q, u, qd), []
     for k, one in enumerate(recordings, 1):
         warned.who = f"recording {k}: " if len(recordings) > 1 else ""
@@ -143,7 +143,7 @@ def fit_joint(
     if len(recordings) > 1:
         options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
         least = {name: 0.0 if name in _PHYSICAL else 0.05 * unit for name in names}
-        checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), least)
+        recording_checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), least)
     for run in runs:
         run.u = run.u / unit
     band = _band(runs)
@@ -156,7 +156,8 @@ def fit_joint(
     slow = _SLOW * band.speed if slow is None else number("slow", slow, ">= 0", unit="rad/s")
     pair = _fits(runs, names, cutoff_hz, band.clean_hz, slow)
     if not pair:
-        raise IdentificationError(f"fewer than {checks.FEWEST // 2} independent samples are in motion: record more")
+        fewest = recording_checks.FEWEST // 2
+        raise IdentificationError(f"fewer than {fewest} independent samples are in motion: record more")
     measured = pair[1].left.rms < pair[0].left.rms if held is None else not choice("held", held, (True, False))
     found = pair[measured]
     lower = (_fits(runs, names, cutoff_hz / 2, band.clean_hz, slow) or pair)[measured]
@@ -166,7 +167,7 @@ def fit_joint(
     stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
     parameters = dict(zip(names, (unit * np.column_stack([found.left.x, stderr])).tolist(), strict=True))
     _check_fit(warned, found, others, "gravity" in terms)
-    checks.check_clipped_drive(warned, found)
+    recording_checks.check_clipped_drive(warned, found)
     _check_parameters(warned, parameters, found, lower, others)
     _check_timing(warned, lower, others, period)
     return JointFit(
@@ -204,10 +205,10 @@ def _runs(warned, recording, delay, number):
     t, q, u = columns_of(t, q, u)
     if q.shape[1] != 1 + (qd is not None):
         raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
-    new = checks.check_signals(warned, t, q[:, 0], u[:, 0], math.inf if wheel else checks.TURNS)
+    new = recording_checks.check_signals(warned, t, q[:, 0], u[:, 0], math.inf if wheel else recording_checks.TURNS)
     if qd is not None:
-        checks.check_outliers(warned, "qd", t, q[:, 1])
-        checks.check_measured_speed(warned, t, *q.T)
+        recording_checks.check_outliers(warned, "qd", t, q[:, 1])
+        recording_checks.check_measured_speed(warned, t, *q.T)
     options = {"cutoff_hz": None, "trim": 0.0, "delay": delay}
     held, measured = (process(t[new], q[new], u[new], held=held, **options) for held in (True, False))
     edges = np.flatnonzero(np.diff(held.segment)) + 1
@@ -301,7 +302,7 @@ def _fits(runs, names, cutoff_hz, sign_hz, slow):
     LeastSquares; misfit: residual over spread of u.
     """
     table = _table(runs, cutoff_hz, sign_hz, slow)
-    if len(table.q) < checks.FEWEST // 2:
+    if len(table.q) < recording_checks.FEWEST // 2:
         return []
     A = table.columns[:, [_COLUMNS.index(name) for name in names]]
     fits = []

@@ -44,7 +44,7 @@ def circle_in_use(circle, arm, centre, radius, first, lap):
 
 
 def _no_angles(circle, lap, place):
-    """Why circle(t) is no function of the time that gives numbers (3, 3), in a sentence; "" if it is."""
+    """Return why circle(t) does not give numbers (3, 3) that depend on t alone, in a sentence; "" if it does."""
     asked, given = np.r_[np.linspace(0, lap, 9), -1, lap + 1], []
     try:
         for t in (*asked, *asked[::-1]):
@@ -66,7 +66,7 @@ class Filtered:
         self._share = my_robot.low_pass(np.array([0.0, 1.0]), cutoff_hz, 100)[1]  # of a jump, after one sample
 
     def reset(self):
-        """Before a run."""
+        """Forget the run before."""
         self._seen = None
         self.controller.reset()
 
@@ -91,7 +91,7 @@ def circle_figure(centre, radius, recording, **tips):
     return figure
 
 
-def simulated(arm, controller, reference, seconds, *, late=0.02, **options):
+def run_simulated(arm, controller, reference, seconds, *, late=0.02, **options):
     """The loop of the lesson on a simulated arm, as fast as it can, not kept on disk.
 
     late: s from sample to action, in whole samples; options: of SimulatedBench.
@@ -107,7 +107,7 @@ def simulated(arm, controller, reference, seconds, *, late=0.02, **options):
     return bench
 
 
-def arm_to_break(fault, **options):
+def bench_for_faults(fault, **options):
     """An open bench on which `fault` may be made: the simulated arm, unless the lab's own file allows it here."""
     bench = arm_that_answers(**options)
     try:
@@ -119,7 +119,7 @@ def arm_to_break(fault, **options):
     return bench
 
 
-def make(fault, bench):
+def cause_fault(fault, bench):
     """Make a fault at joint 1 of a simulated arm, or stop this process for 0.7 s; a real arm needs a hand."""
     plant = getattr(bench, "plant", None)
     if fault == "process":
@@ -133,19 +133,19 @@ def make(fault, bench):
         counts = plant.counts
         plant.counts = lambda: np.array([1023.0, *counts()[1:]])
     else:
-        bench._measure = lambda cycle, drive: _gone(bench)
+        bench.measure = lambda cycle, drive: _cable_pulled(bench)
 
 
-def _gone(bench):
+def _cable_pulled(bench):
     """A pulled cable: the board hears nothing more, and cuts the drive by itself after 0.1 s."""
-    bench.plant.advance(bench._pwm, 0.1)
+    bench.plant.advance(bench.command, 0.1)
     raise BoardLostError(
         "the board is gone: it brakes by itself 0.1 s after the last command, then gravity has the arm"
     )
 
 
-def aftermath(bench, fault_at=1.0):
-    """What a fault has done: s until the run ended, degrees the waist turned in them, mm the tip has sunk since.
+def after_fault(bench, fault_at=1.0):
+    """Return s from the fault to the end of the run, degrees the waist turned meanwhile, mm the tip has sunk since.
 
     Of a simulated arm the truth; of a real one what was measured, and nobody knows (nan) how far it sank.
     """

@@ -30,15 +30,13 @@ _SELDOM, _OFTEN = 0.02, 0.25
 _MISSED = 0.07, 0.03
 # Failed readings: stays at one value of no more samples than this, and so many of them
 _FAILED, _FAILED_TIMES = 20, 2
-_NEAR = (
-    5.0  # sampling periods from one neighbour to the other: if they are further apart, motion may look like an outlier
-)
+# Sampling periods from one neighbour to the other: if they are further apart, motion may look like an outlier
+_NEAR = 5.0
 _ONE_SIDED = 0.98  # share of the samples: if more have one sign, a size was recorded
 _SIGNED = 0.6  # residual over spread of u: if less is left with the sign of the other signal, that sign was missing
 _ONE_SIZE = 0.3  # jumps of x by more than half its range are of one size if they differ by less than this share of it
-_END = (
-    30  # per cent of the values on one side of a jump: so few lie between where the jump ends and the end of the range
-)
+# Per cent of the values on one side of a jump: so few lie between where the jump ends and the end of the range
+_END = 30
 _CONTRADICT = 3.0  # standard errors: if two recordings differ by more, and by 5 %, they contradict each other
 
 
