@@ -352,7 +352,7 @@ def _check_fit(warned, found, others, with_gravity):
     left, gravity = found.left, others.get("gravity", found.left).rms / found.left.rms
     explained = 1 - (found.misfit * gravity) ** 2
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
-    if found.misfit > _POOR and (sentence := checks.without_sign(found)):
+    if found.misfit > _POOR and (sentence := recording_checks.without_sign(found)):
         warned.refuse(sentence)
     elif explained < _EXPLAINED or (F < _F and explained < 0.5):
         share = f"{max(explained, 0):.1%} of it (F = {F:.1f}, needed {_F:.0f}; too few independent samples?)"
