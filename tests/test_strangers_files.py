@@ -3,7 +3,8 @@
 import pytest
 
 from ir50p_lab.bench import JointCalibration, Recording, SimulatedBench
-from ir50p_lab.bench.set_point import SetPoint, checked_pose
+from ir50p_lab.bench.limits import checked_pose
+from ir50p_lab.bench.set_point import SetPoint
 from ir50p_lab.errors import ArmError, CalibrationError, InputError, RecordingError
 from ir50p_lab.identification import load_excitations
 from ir50p_lab.modelling import IR50P, Arm, load_arm

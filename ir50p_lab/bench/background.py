@@ -20,9 +20,9 @@ import cloudpickle
 import numpy as np
 
 from ir50p_lab.bench import loop_process
+from ir50p_lab.bench.limits import MOST_PUSH, checked_pose, checked_push, checked_reference
 from ir50p_lab.bench.live_loop import ENDED, LEADING, RUNNING, STARTING, live_loop
 from ir50p_lab.bench.recording import Recording
-from ir50p_lab.bench.set_point import MOST_PUSH, checked_pose, checked_push, checked_reference
 from ir50p_lab.browser_tab import IN_BROWSER, needs_more
 from ir50p_lab.controllers.base import check_controller, check_reference, gains, gains_of
 from ir50p_lab.errors import BenchError, InputError
@@ -179,7 +179,7 @@ class LiveRun:
 
     @property
     def alive(self):
-        """Whether the loop still runs."""
+        """True while the loop runs."""
         return self._thread.is_alive()
 
     @property
@@ -283,7 +283,7 @@ class LiveRun:
             self._bench._open()
 
     def is_here(self):
-        """Whether the caller is the loop itself."""
+        """Return True if called from the loop's own thread."""
         return threading.current_thread() is self._thread
 
     def _wait(self, timeout):

@@ -38,18 +38,21 @@ class Bench:
     rest pose, where it stays without drive, and then lets go; leaving it by an error or Ctrl-C cuts the drive at once,
     and the arm sinks as gravity has it.
 
-    Subclasses supply `_measure` and, where there is something to do, `_open`, `_begin`, `_send`, `_cut` and `_close`.
+    Subclasses supply `measure` and, where there is something to do, `_open`, `_begin`, `_send`, `_cut` and `_close`.
+
+    A `Run` takes from its bench `measure`, `radians` and `timing`, and writes `last`.
 
     Attributes: arm: Arm (limits, kinematics); calibration: counts to rad; period: s; simulated: bool; name: str;
     bench_id: which bench it is, on which results are measured, as 'board-0a1b2c' or 'simulated-unit-0' (None: nobody
     knows, or the board has none yet); is_open: whether the arm is in hand; live_run: the LiveRun that has the arm, or
-    had it last; recording: Recording of the last run (None before).
+    had it last; recording: Recording of the last run (None before); command: PWM counts (3,) that the motors have;
+    gripper: whether it is closed; last: the Sample measured last (None before).
     """
 
     kind = "bench"
     simulated = False
     answers = True  # whether drive moves the arm
-    bench_id = recording = live_run = _last = _run = None
+    bench_id = recording = live_run = last = _run = None
     guarded = True  # whether a runaway is cut; off only while the motors have no supply
     caps = Caps()
     table = 0.0  # its height, m: a tip far below cannot be; -inf where that is not asked
@@ -67,7 +70,7 @@ class Bench:
         self.name = name or f"{self.kind} {arm.name}"
         self.record_to = record_to
         self.is_open, self._clock = False, Clock
-        self._pwm, self._gripper = np.zeros(JOINTS), False
+        self.command, self.gripper = np.zeros(JOINTS), False
         self._travel = tuple(zip(arm.q_min, arm.q_max, strict=True))
 
     # ---- what a subclass supplies
@@ -78,7 +81,7 @@ class Bench:
     def _begin(self):
         """A run begins: its time is zero now."""
 
-    def _measure(self, cycle, drive):
+    def measure(self, cycle, drive):
         """Measure in this cycle of the run; drive: keep the present command alive, else drive nothing.
 
         Returns: t (s), counts (3,), and whether the watchdog had cut the drive before, so that it is off now.
@@ -94,7 +97,7 @@ class Bench:
     def _close(self):
         """Give everything free; must work in any state."""
 
-    def _radians(self, counts):
+    def radians(self, counts):
         """Angles of the counts just measured; only a recording knows better."""
         return self.calibration.radians(counts)
 
@@ -103,17 +106,17 @@ class Bench:
         return {}
 
     def _make_pace(self):
-        """What says when the cycles of a run are due: CountedPace, or Pace on a bench that follows the clock."""
+        """Return the timer of a run: CountedPace, or Pace on a bench that follows the clock."""
         return CountedPace()
 
-    def _statistics(self, run):
+    def timing(self, run):
         """Timing of a run, for the end of its recording: dict; empty on a bench that simulates time."""
         if not isinstance(run.pace, Pace):
             return {}
         return {"late_cycles": run.pace.missed, "watchdog_trips": run.trips}
 
     def _make_guard(self):
-        """What looks at every exchange of the run that begins, or None.
+        """Return the guard that checks every sample of the run that begins, or None.
 
         Its check(sample, pwm) gets each Sample before the program does, and the command (3,) PWM counts that the motors
         had since the sample before. What it raises cuts the drive and ends the run. An arm without actuators has none:
@@ -152,7 +155,7 @@ class Bench:
             if self.live_run is not None:
                 self.live_run.stop()  # brings the arm to its rest pose
             self._end_run()
-            if self._last is not None:  # never moved: nothing to bring back
+            if self.last is not None:  # never moved: nothing to bring back
                 self.go_to_rest()
         finally:
             self.abort()
@@ -173,7 +176,7 @@ class Bench:
         """
         if self.live_run is not None:
             self.live_run.cut()
-        self._pwm = np.zeros(JOINTS)
+        self.command = np.zeros(JOINTS)
         return self._cut()
 
     def run(self, seconds, reference=None, *, record=True, **header):
@@ -215,7 +218,7 @@ class Bench:
         """A Run from its beginning to its end; an error cuts the drive first."""
         self._end_run()  # of a loop that was left by break
         run = self._run = Run(self, reference)
-        self._pwm = np.zeros(JOINTS)
+        self.command = np.zeros(JOINTS)
         try:
             if record:
                 head = self.head() | {name: str(value) for name, value in header.items()}
@@ -237,7 +240,7 @@ class Bench:
                 self._end_run()
 
     def head(self):
-        """What the head of a recording says of this bench: dict of str."""
+        """Return what the head of a recording says about this bench: dict of str."""
         return {
             "arm": self.arm.name,
             "kind": self.kind,
@@ -283,11 +286,11 @@ class Bench:
             run.guard.admit(command)
         run.pace.armed = True
         if gripper is not None:
-            self._gripper = bool(gripper)
+            self.gripper = bool(gripper)
         if reference is not None:
             run.aim = reference
-        self._send(command, self._gripper)
-        self._pwm = command
+        self._send(command, self.gripper)
+        self.command = command
         return command.copy()
 
     def _command_of(self, pwm):
@@ -299,15 +302,15 @@ class Bench:
         except Exception:  # whatever the conversion of a stranger raises
             raise InputError(f"pwm = {pwm!r:.60}: give three finite numbers of PWM counts") from None
         limited = []  # scalars: for three numbers arrays take longer than the arm
-        for u, q, (low, high) in zip(given.tolist(), self._last.q.tolist(), self._travel, strict=True):
+        for u, q, (low, high) in zip(given.tolist(), self.last.q.tolist(), self._travel, strict=True):
             out = (q <= low and u < 0) or (q >= high and u > 0)
             limited.append(0.0 if out else min(max(float(round(u)), -LIMIT_PWM), LIMIT_PWM))
         return np.array(limited)
 
     def note(self, text, t=None):
         """Write into the recording what has just been changed (gains, a payload); t: s, default the last sample's."""
-        if self._run is not None and self._run.recorder is not None and self._last is not None:
-            self._run.recorder.event(self._last.t if t is None else t, text)
+        if self._run is not None and self._run.recorder is not None and self.last is not None:
+            self._run.recorder.event(self.last.t if t is None else t, text)
 
     def follow(self, controller, reference, seconds, *, record=True, **header):
         """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call.
@@ -329,7 +332,7 @@ class Bench:
 
     def go_to_rest(self):
         """Move to the rest pose, where the arm stays when let go; not recorded."""
-        controller, reference = trajectory_to_rest(self.arm, self._last.q, self.period, *self.caps[:2])
+        controller, reference = trajectory_to_rest(self.arm, self.last.q, self.period, *self.caps[:2])
         for sample in self.run(reference.duration + 0.5, record=False):
             self._run.capped = False
             self.drive(controller.step(sample.t, sample.q, reference(sample.t)))

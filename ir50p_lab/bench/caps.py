@@ -51,7 +51,7 @@ class Caps(namedtuple("Caps", "limit_pwm speed workspace faults source", default
         if rows is not None:
             self.check("the tip of the reference, m,", "workspace", forward_kinematics(run.bench.arm, rows[0]))
             self.check("the speed of the reference, rad/s,", "speed", rows[1])
-        if run.bench._pwm.any():  # else it is moved by hand
+        if run.bench.command.any():  # else it is moved by hand
             self.check("the tip, m,", "workspace", forward_kinematics(run.bench.arm, q), _BESIDE)
             if run.guard is not None and run.guard.watch.now[1] > _BLOCKS:
                 way = run.guard.watch.past[-1] - run.guard.watch.past[-1 - _BLOCKS]

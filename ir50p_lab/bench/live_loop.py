@@ -40,19 +40,19 @@ def live_loop(bench, controller, reference, orders, tell):
         with contextlib.closing(bench.run(_DAY, loop.target, **header | header_of(controller))) as samples:
             if loop.follow(samples, controller) == "stop" and bench.answers:
                 bench._run.end_recording()
-                controller, trajectory = trajectory_to_rest(bench.arm, bench._last.q, bench.period, *bench.caps[:2])
+                controller, trajectory = trajectory_to_rest(bench.arm, bench.last.q, bench.period, *bench.caps[:2])
                 bench._run.capped = False
-                loop.target.take(trajectory, bench._last.t)
-                end = bench._last.t + trajectory.duration + 0.5
+                loop.target.take(trajectory, bench.last.t)
+                end = bench.last.t + trajectory.duration + 0.5
                 loop.follow(takewhile(lambda sample: sample.t < end, samples), controller, returning=True)
     finally:
         bench.cut()
-        bench._last = None  # closing the bench moves nothing: the arm is at rest, or was cut on purpose
+        bench.last = None  # closing the bench moves nothing: the arm is at rest, or was cut on purpose
         loop.say(ENDED)
 
 
 class _Loop:
-    """What the parts of a run in the background have in common."""
+    """One run in the background: its bench, target, queue of orders and phase."""
 
     def __init__(self, bench, target, orders, tell):
         self.bench, self.target, self.orders, self.tell = bench, target, orders, tell
@@ -110,7 +110,7 @@ class _Target:
     def __call__(self, t):
         if self._point is None:  # the arm has just been measured for the first time
             arm = self.bench.arm
-            self._point = SetPoint(np.clip(self.bench._last.q, arm.q_min, arm.q_max), speed=self.speed)
+            self._point = SetPoint(np.clip(self.bench.last.q, arm.q_min, arm.q_max), speed=self.speed)
             if self.leading:
                 self._point.move_to(self.reference(0.0)[0])
         if self.leading and (self._point.q == self._point.goal).all():

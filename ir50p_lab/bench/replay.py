@@ -58,7 +58,8 @@ class ReplayBench(Bench):
         if there < cycles:
             print(f"The recording ends at t = {self.original.t[-1]:.2f} s, and with it this run.")
 
-    def _measure(self, cycle, drive):
+    def measure(self, cycle, drive):
+        """See `Bench.measure`: what was recorded then."""
         t = self.original.t
         self._q = self.original.q[cycle]
         if self.realtime:
@@ -66,7 +67,8 @@ class ReplayBench(Bench):
         self._run.pace.missed = int(self._late[cycle])
         return float(t[cycle]), self._counts[cycle], False
 
-    def _radians(self, counts):
+    def radians(self, counts):
+        """See `Bench.radians`."""
         return self._q  # as it was recorded
 
     def _header(self):

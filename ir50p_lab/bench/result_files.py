@@ -1,12 +1,14 @@
-"""The student's results as files: what was measured, when, on which bench; and the newest that counts for a bench."""
+"""The student's results as files, read: what was measured, when, on which bench; and the newest that counts for one.
+
+`course.lab_book.results` writes them.
+"""
 
 import json
 from collections import namedtuple
 from dataclasses import replace
-from datetime import datetime
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.home import home, replace_text
+from ir50p_lab.home import home
 
 _FIELDS = "name kind made chosen arm bench bench_id unit seed simulated withdrawn file"
 
@@ -48,36 +50,6 @@ def newest(kind, bench_id, arm):
     """The Result of this kind for the arm on the bench with this id that was chosen last; None if there is none."""
     fits = [one for one in every() if (one.kind, one.bench_id, one.arm) == (kind, bench_id, arm) and not one.withdrawn]
     return fits[-1] if fits else None
-
-
-def add(kind, suffix, write, **about):
-    """Keep a result. write: function (path) that writes the numbers; about: the other fields of Result. Returns it.
-
-    Raises InputError if it cannot be written.
-    """
-    number = 1 + max((int(one.name.rpartition("-")[2]) for one in every() if one.kind == kind), default=0)
-    name, now = f"{kind}-{number}", datetime.now().astimezone().isoformat()
-    result = Result(name=name, kind=kind, made=now, chosen=now, withdrawn=False, file=f"{name}{suffix}", **about)
-    try:
-        folder().mkdir(parents=True, exist_ok=True)
-        write(result.path)
-        _describe(result)
-    except OSError as error:
-        raise InputError(f"cannot keep {name} in {folder()}: {error.strerror}; set IR50P_HOME to a folder") from None
-    return result
-
-
-def change(name, *, withdrawn):
-    """Withdraw a result, or let it count from now on, whatever is newer. Raises InputError for an unknown name."""
-    known = {one.name: one for one in every()}
-    if name not in known:
-        raise InputError(f"there is no result {name!r}: {', '.join(known) or 'none at all'}")
-    chosen = known[name].chosen if withdrawn else datetime.now().astimezone().isoformat()
-    _describe(known[name]._replace(withdrawn=withdrawn, chosen=chosen))
-
-
-def _describe(result):
-    replace_text(folder() / f"{result.name}.json", json.dumps(result._asdict(), indent=1) + "\n")
 
 
 def own_calibration(bench):

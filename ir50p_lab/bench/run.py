@@ -5,9 +5,9 @@ from collections import namedtuple
 
 import numpy as np
 
+from ir50p_lab.bench.limits import checked_reference
 from ir50p_lab.bench.pace import LONGEST_PAUSE, WATCHDOG, cut_said
 from ir50p_lab.bench.protocol import JOINTS
-from ir50p_lab.bench.set_point import checked_reference
 from ir50p_lab.errors import BenchError, PauseError
 
 
@@ -24,12 +24,12 @@ class Run:
     """What belongs to one run.
 
     Args: bench: the Bench that it measures and drives; reference: target(t) or None.
-    Attributes: recorder: Recorder or None; pace: Pace or CountedPace; guard: see `Bench._make_guard`; row: the Sample
-    whose command may still come, before its row is written; aim: its reference (3,); fault: what has ended it; capped:
-    whether the lab's caps hold, all but that of PWM; trips: of the watchdog.
+    Attributes: recorder: Recorder or None; pace: Pace or CountedPace; guard: see `Bench._make_guard`; open_row: the
+    Sample whose row is not written yet, for its command may still come; aim: its reference (3,); fault: what has ended
+    it; capped: whether the lab's caps hold, all but that of PWM; trips: of the watchdog.
     """
 
-    recorder = pace = guard = row = aim = fault = None
+    recorder = pace = guard = open_row = aim = fault = None
     capped, trips = True, 0
 
     def __init__(self, bench, reference):
@@ -47,13 +47,13 @@ class Run:
                 continue
             if cycle >= cycles:
                 return None
-            t, counts, tripped = bench._measure(cycle, drive=pace.armed)
+            t, counts, tripped = bench.measure(cycle, drive=pace.armed)
             pace.armed = pace.armed or cycle > 0
             if self.paused(WATCHDOG * tripped):  # commands were lost on the wire
                 continue
-            sample = self.row = bench._last = Sample(t, bench._radians(counts), counts, pace.missed)
+            sample = self.open_row = bench.last = Sample(t, bench.radians(counts), counts, pace.missed)
             if self.guard is not None:
-                self.guard.check(sample, bench._pwm)
+                self.guard.check(sample, bench.command)
             rows = None
             if self.reference is not None:
                 rows = checked_reference(bench.arm, t, self.reference(t), sample.q if bench.answers else None)
@@ -63,7 +63,10 @@ class Run:
             return Sample(t, sample.q.copy(), counts.copy(), pace.missed, rows)  # may be written into
 
     def paused(self, silence):
-        """Whether the drive was cut in this silence, s: then it is said and measured; too long a one ends the run."""
+        """Return True if the watchdog has cut the drive in this silence (s). Then say so and measure again.
+
+        Raises PauseError if the silence was too long: the run has ended.
+        """
         if silence < WATCHDOG:
             return False
         self.write_row()
@@ -73,10 +76,10 @@ class Run:
         self.trips += 1
         said, ended = f"the drive was cut: no command for {silence:.2f} s", silence > LONGEST_PAUSE
         bench.note(said + "; the run was ended" * ended, when)
-        bench._pwm = np.zeros(JOINTS)
+        bench.command = np.zeros(JOINTS)
         with contextlib.suppress(BenchError) if ended else contextlib.nullcontext():
-            t, counts, _ = bench._measure(pace.cycle, drive=False)
-            bench._last = self.row = Sample(t, bench._radians(counts), counts, pace.missed)
+            t, counts, _ = bench.measure(pace.cycle, drive=False)
+            bench.last = self.open_row = Sample(t, bench.radians(counts), counts, pace.missed)
         if ended:
             paused = f"the program sent no command for {silence:.1f} s, from t = {when - WATCHDOG:.2f} s on"
             remedy = "start a new run, without plots or input in its loop, or use bench.start(...)"
@@ -88,12 +91,12 @@ class Run:
 
     def write_row(self):
         """Record the last sample with the command that has followed it."""
-        sample, aim, self.row, self.aim = self.row, self.aim, None, None
+        sample, aim, self.open_row, self.aim = self.open_row, self.aim, None, None
         if sample is not None and self.recorder is not None:
-            self.recorder.write(sample, self.bench._pwm, aim, self.bench._gripper)
+            self.recorder.write(sample, self.bench.command, aim, self.bench.gripper)
 
     def end_recording(self):
-        """What comes in this run from now on is not recorded."""
+        """Write the last row and close the recording; the run itself may go on."""
         try:
             self.write_row()
         except BaseException:  # a full disk; nobody may hear of it while a generator is closed
@@ -102,4 +105,4 @@ class Run:
         finally:
             recorder, self.recorder = self.recorder, None
             if recorder is not None:
-                recorder.close(self.bench._statistics(self))
+                recorder.close(self.bench.timing(self))

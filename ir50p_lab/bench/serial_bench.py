@@ -86,10 +86,11 @@ class SerialBench(Bench):
     def _make_pace(self):
         return Pace(self._clock, self.period)
 
-    def _measure(self, cycle, drive):
-        kind, command = (protocol.DRIVE, self._pwm) if drive else (protocol.STOP, (0, 0, 0))
+    def measure(self, cycle, drive):
+        """See `Bench.measure`: one exchange with the board."""
+        kind, command = (protocol.DRIVE, self.command) if drive else (protocol.STOP, (0, 0, 0))
         try:
-            state, sent = self._link.ask(kind, command, self._gripper, patience=LOST_AFTER)
+            state, sent = self._link.ask(kind, command, self.gripper, patience=LOST_AFTER)
         except BoardLostError:
             raise self._lost(f"has not answered for {LOST_AFTER:g} s") from None
         except PORT_ERRORS as error:
@@ -120,7 +121,7 @@ class SerialBench(Bench):
         if self._link is not None:
             # whatever happens: the board cuts by itself 0.1 s after the last command. BaseException: a second Ctrl-C
             with contextlib.suppress(BaseException):
-                self._link.stop(self._gripper)
+                self._link.stop(self.gripper)
                 return True
         return False
 
@@ -164,8 +165,9 @@ class SerialBench(Bench):
             self.identity = self._shake_hands(HANDSHAKE, protocol.NAME, number)
         return self.bench_id
 
-    def _statistics(self, run):
-        return vars(self.statistics) | super()._statistics(run)
+    def timing(self, run):
+        """See `Bench.timing`; the counts of the wire with it."""
+        return vars(self.statistics) | super().timing(run)
 
     # ---- the rest
 

@@ -7,11 +7,11 @@ import numpy as np
 from ir50p_lab.bench.arm_instance import UNIT
 from ir50p_lab.bench.base import Bench, Sample
 from ir50p_lab.bench.caps import FAULTS, Caps
+from ir50p_lab.bench.limits import FARTHEST, NOBODY, NOISE, checked_push, checked_reference
 from ir50p_lab.bench.pace import WATCHDOG, Pace, load_controllers
 from ir50p_lab.bench.protocol import JOINTS, LIMIT_PWM
 from ir50p_lab.bench.recorder import header_of
 from ir50p_lab.bench.runaway import UNDER, UNDER_ALARM, push, tip_height, watch_step
-from ir50p_lab.bench.set_point import FARTHEST, NOBODY, NOISE, checked_push, checked_reference
 from ir50p_lab.bench.simulated_arm import STEP, SimulatedArm, advance_unit, read_pots
 from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.controllers.law import law_step
@@ -75,8 +75,8 @@ class SimulatedBench(Bench):
         calibration: default the nominal one, from which the unit differs a little, as a real one does; period: s, whole
         milliseconds; record_to: folder for recordings, or False for none on disk.
 
-    Attributes: plant: the SimulatedArm; truth: Truth of the last run, the drive to rest included; that of a recorded run
-    is its `recording.truth`. For tests and for plots that say so.
+    Attributes: plant: the SimulatedArm; truth: Truth of the last run, also of the drive to rest; a recording has
+    its own. For tests and for plots that say so.
 
     Raises: ArmError without actuators, InputError for a period or q0 that is not possible.
     """
@@ -108,18 +108,18 @@ class SimulatedBench(Bench):
         self._push_ends, self._told, self._strongest = 0.0, None, 0.0  # what the recording knows of a hand
         if self.realtime:
             load_controllers()
-            push(self._queue, self._pwm)
-            self.plant.advance(self._pwm, 0.0)  # compiled before the clock starts
+            push(self._queue, self.command)
+            self.plant.advance(self.command, 0.0)  # compiled before the clock starts
 
     def _make_pace(self):
         return Pace(self._clock, self.period) if self.realtime else super()._make_pace()
 
-    def _measure(self, cycle, drive):
+    def measure(self, cycle, drive):
         """Time is counted in periods; left alone for longer than the board's watchdog allows, the arm has no drive."""
         for late in range(cycle - self._cycle):
             if self.realtime and late * self.period >= WATCHDOG:
                 self._cut()
-            push(self._queue, self._pwm)
+            push(self._queue, self.command)
             self.plant.advance(self._queue[0], self.period)
         self._cycle = cycle
         if not drive:
@@ -133,7 +133,7 @@ class SimulatedBench(Bench):
         return t, self.plant.counts(), False
 
     def _cut(self):
-        self._queue[:], self._pwm = 0.0, np.zeros(JOINTS)
+        self._queue[:], self.command = 0.0, np.zeros(JOINTS)
         return True
 
     def _close(self):
@@ -192,14 +192,14 @@ class SimulatedBench(Bench):
         line = (np.array(self.calibration.slope), np.array(self.calibration.zero))
         fixed = (*self.plant.arrays, *line, *np.array(self._travel).T.copy())
         law = (controller.parameters, controller.state)
-        state, noise = (self._queue, self._pwm, *law, run.guard.watch), self.plant.noise(len(t))
+        state, noise = (self._queue, self.command, *law, run.guard.watch), self.plant.noise(len(t))
         done, alarm = _compiled_cycles(*fixed, *state, t, r, noise, self._steps, out)
         rows = out[:done]
         if run.recorder is not None and done:
-            run.recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self._gripper, 0)
+            run.recorder.write_block(t[:done], rows[:, 3:6], rows[:, :3], rows[:, 6:9], r[:done, 0], self.gripper, 0)
         self._truth.append((t[:done], rows[:, 9:12], rows[:, 12:15]))
         if done:
-            self._last = Sample(float(t[done - 1]), rows[-1, 3:6].copy(), rows[-1, :3].copy(), 0)
+            self.last = Sample(float(t[done - 1]), rows[-1, 3:6].copy(), rows[-1, :3].copy(), 0)
         run.guard.refuse(alarm, t[min(done, len(t) - 1)])
         if done < len(t):
             checked_reference(self.arm, t[done], r[done], out[done, 3:6])

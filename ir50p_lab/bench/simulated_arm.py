@@ -6,8 +6,8 @@ import numpy as np
 
 from ir50p_lab.bench.arm_instance import UNIT, chosen_copy
 from ir50p_lab.bench.calibration import nominal_calibration
+from ir50p_lab.bench.limits import checked_pose
 from ir50p_lab.bench.rest import rest_pose
-from ir50p_lab.bench.set_point import checked_pose
 from ir50p_lab.errors import ArmError, InputError
 from ir50p_lab.jit import jit, on_floats
 from ir50p_lab.modelling import closed_form as cf

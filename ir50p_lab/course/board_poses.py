@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.errors import InputError
-from ir50p_lab.vision.board_pose import moved
+from ir50p_lab.vision.board_pose import transform_points
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.pinhole import as_pinhole
 
@@ -30,7 +30,7 @@ def board_poses(pinhole, count, seed=0, board=None):
         aim = pinhole.to_normalised(np.array([rng.uniform(0.12, 0.88) * w, rng.uniform(0.12, 0.88) * h]))
         T = np.eye(4)
         T[:3, :3], T[:3, 3] = R, np.array([*aim, 1.0]) * Z - R @ outline.mean(axis=0)
-        if moved(T, outline)[:, 2].min() > 0.3 * Z:
+        if transform_points(T, outline)[:, 2].min() > 0.3 * Z:
             xy = pinhole.project(T, outline)
             if (xy > 2).all() and (xy < np.array([w, h]) - 3).all():
                 poses.append(T)

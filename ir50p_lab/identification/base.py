@@ -1,6 +1,6 @@
 """Base parameters: which parameters a motion can tell apart, and which act on the torque only as a group."""
 
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy as np
 
@@ -10,8 +10,7 @@ from ir50p_lab.identification.parameters import NAMES
 from ir50p_lab.identification.regression import DEPENDENT, independent_columns
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class BaseParameters:
+class BaseParameters(namedtuple("BaseParameters", "rank columns matrix names unseen groups singular_values")):
     """Phi theta = Phi[..., columns] (matrix theta): as many base parameters as the rank, each a group.
 
     =============== ============================================================================== =========
@@ -27,14 +26,6 @@ class BaseParameters:
                     shows how clear the rank is
     =============== ============================================================================== =========
     """
-
-    rank: int
-    columns: np.ndarray
-    matrix: np.ndarray
-    names: tuple
-    unseen: tuple
-    groups: tuple
-    singular_values: np.ndarray
 
     def __str__(self):
         head = f"{self.rank} base parameters of {len(self.names)}"

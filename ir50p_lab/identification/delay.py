@@ -6,9 +6,9 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification.arm_regressor import regressor
-from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.parameters import RIGID_ON
 from ir50p_lab.identification.processing import process
+from ir50p_lab.identification.recording_checks import at_bounds
 from ir50p_lab.identification.time_series import columns_of, sampling_period
 
 _FLAT = 1.01  # times the smallest residual: a delay that leaves less fits as well as the best one

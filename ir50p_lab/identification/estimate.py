@@ -28,7 +28,7 @@ class Estimate:
     warnings       doubts about this fit, as sentences                                              tuple of str
     unit           of y: "PWM" or "N m"
     method, rows   how it was fitted; rows: "joint" or "shared"
-    steps          options of `process` that `score` repeats; set by `identify`, else empty         dict
+    processing     options of `process` that `score` repeats; set by `identify`, else empty         dict
     ============== ================================================================================ ==============
     """
 
@@ -44,19 +44,19 @@ class Estimate:
     unit: str = "PWM"
     method: str = "ls"
     rows: str = "joint"
-    steps: dict = field(default_factory=dict)
+    processing: dict = field(default_factory=dict)
 
     def predict(self, Phi):
         """Torque or PWM counts Phi theta, (n, 3), of a regressor (n, 3, 20). Raises InputError on another shape."""
         return np.einsum("nij,ij->ni", blocks("Phi", Phi), self.theta)
 
     def score(self, recording, q=None, u=None):
-        """Validation of "u" on another recording    (Table 4.4), processed with `steps`, as the training was."""
-        return validate(self, recording, q, u, **self.steps)
+        """Validation of "u" on another recording    (Table 4.4), processed with `processing`, as the training was."""
+        return validate(self, recording, q, u, **self.processing)
 
     @property
     def summary(self):
-        """What was found, which parameters may be zero, and the warnings, as a tuple of sentences."""
+        """The result in sentences: sizes and residuals, parameters that may be zero, warnings."""
         sentences = []
         for row, who in _rows(self.rows).items():
             counts = f"{len(self.columns[row])} parameters from {len(self.residuals)} samples"

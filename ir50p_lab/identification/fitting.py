@@ -4,10 +4,10 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.estimate import Estimate, impossible_values, indefinite_mass
 from ir50p_lab.identification.fit_input import checked_data
 from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, FREE_OF_SIGN, NAMES, metres
+from ir50p_lab.identification.recording_checks import at_bounds
 from ir50p_lab.identification.regression import Problem
 from ir50p_lab.inputs import choice
 

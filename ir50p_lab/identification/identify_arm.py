@@ -6,9 +6,9 @@ import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
-from ir50p_lab.identification.checks import Warnings, check_signals
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
+from ir50p_lab.identification.recording_checks import Warnings, check_signals
 from ir50p_lab.identification.time_series import columns_of
 
 _CONTRADICT = 1.3  # residual of a recording with the common model over that with its own: if more, it contradicts
@@ -49,7 +49,7 @@ def identify(
     recordings = list(recordings) if isinstance(recordings, (list, tuple)) else [recordings]
     if not recordings:
         raise InputError("no recording given: give one, or a list of them")
-    steps = {"cutoff_hz": cutoff_hz, "delay": delay, "held": held}
+    processing = {"cutoff_hz": cutoff_hz, "delay": delay, "held": held}
     notes, parts = [], []
     for recording in recordings:
         t, q, u = columns_of(recording)
@@ -60,13 +60,14 @@ def identify(
             if share > 0.05:
                 warned.add(f"u is at its largest or smallest value in {share:.0%}: if clipped, record a wider range")
             notes += warned
-        motion = process(recording, slow=slow, **steps)
+        motion = process(recording, slow=slow, **processing)
         parts.append((regressor(motion.q, motion.qd, motion.qdd, sign=TURN), motion.u, motion.use))
     Phi, y, use = map(np.concatenate, zip(*parts, strict=True))
     options = {"method": method, "l2": l2, "unit": unit}
     found = fit(Phi, y, use=use, **options)
     said, stderr = _contradiction(found, parts, options) if len(parts) > 1 else ([], found.stderr)
-    return replace(found, stderr=stderr, warnings=(*notes, *said, *found.warnings), steps={**steps, "sign": TURN})
+    warnings = (*notes, *said, *found.warnings)
+    return replace(found, stderr=stderr, warnings=warnings, processing=processing | {"sign": TURN})
 
 
 def _contradiction(found, parts, options):

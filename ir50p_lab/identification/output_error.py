@@ -7,11 +7,11 @@ import numpy as np
 
 from ir50p_lab.controllers.base import check_reference, is_compiled
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.checks import at_bounds
 from ir50p_lab.identification.parameters import FREE_OF_SIGN, NAMES, RIGID_ON, metres
+from ir50p_lab.identification.recording_checks import at_bounds
 from ir50p_lab.identification.regression import least_squares
 from ir50p_lab.identification.time_series import columns_of, sampling_period
-from ir50p_lab.identification.validation import compared
+from ir50p_lab.identification.validation import compare_signals
 from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY, as_theta
 from ir50p_lab.simulation.loops import sampled_loop
@@ -19,7 +19,9 @@ from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant
 from ir50p_lab.simulation.simulate import sampled
 
 _STEP = 0.02  # share of a parameter's scale, step of numerical derivatives: with less, stiction makes the output jump
-_AT = 0.02  # share of a parameter's scale: what is nearer to its bound stands at it; the search never quite reaches it
+# Share of a parameter's scale: nearer to its bound than this counts as at the bound: the search stops just short
+_AT = 0.02
+_AT_ERRORS = 0.1  # of its standard error: the same
 _QS = (0.005, 0.5)  # rad/s, bounds of the Stribeck speed
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 _COULOMB = [0, 1, 2], [NAMES.index(name) for name in ("fc1", "fc2", "fc3")]
@@ -46,7 +48,7 @@ class OutputError:
         """Simulate the loop of another recording: (Validation of "q", Validation of "u")."""
         run = ClosedLoopRun(recording, controller, reference, delay=self.delay)
         q, u = run.simulate(self.theta, self.fs, self.qs)
-        return compared(run.t, run.q, q, "q"), compared(run.t, run.u, u, "u")
+        return compare_signals(run.t, run.q, q, "q"), compare_signals(run.t, run.u, u, "u")
 
 
 class ClosedLoopRun:
@@ -165,7 +167,8 @@ def output_error(
         found = minimise(residuals, x0, slopes, bounds=(low, high), x_scale=scale, max_nfev=iterations, ftol=1e-4)
         bar.update(iterations - bar.n)  # it may have settled before
     spread = least_squares(found.jac.reshape(-1, 6, len(x0)), found.fun.reshape(-1, 6), names=names)
-    said, at = at_bounds(names, found.x, low, high, _AT * scale)
+    known = np.where(np.isfinite(spread.stderr), spread.stderr, 0.0)
+    said, at = at_bounds(names, found.x, low, high, np.maximum(_AT * scale, _AT_ERRORS * known))
     notes, stderr = [*spread.warnings, *said], np.where(at, np.inf, spread.stderr)
     if found.status == 0:
         notes.append(f"not settled after {iterations} steps: give more, or a better first estimate")

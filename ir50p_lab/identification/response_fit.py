@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification.checks import Warnings, at_bounds, check_outliers
+from ir50p_lab.identification.recording_checks import Warnings, at_bounds, check_outliers
 from ir50p_lab.identification.time_series import quantum_of, same_samples
 from ir50p_lab.inputs import number
 from ir50p_lab.simulation.first_order_lag import respond

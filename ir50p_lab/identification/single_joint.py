@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.identification import checks
+from ir50p_lab.identification import recording_checks
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.regression import least_squares
 from ir50p_lab.identification.time_series import columns_of, quantum_of
@@ -32,6 +32,9 @@ _THIN = 4.0  # samples kept per period of the cut-off: more would only repeat th
 _EDGE = 1.5  # periods of the cut-off left out at both ends of a run, where the filter has data on one side only
 _SLOW = 0.1  # share of the rms speed: slower samples are left out unless slow= says otherwise
 _DROWNED = 3.0  # rms speed over that of its noise: if it is less, the data are refused
+
+# Which samples of u stand at a limit: so many deviations of its noise from the extreme, and no more of its range
+_SCATTER, _NEAR_LIMIT = 7.0, 0.15
 
 # How far the errors are widened
 _UNSURE = 0.5  # sampling periods: standard deviation of the delay of u beyond delay=, before the data say more
@@ -128,7 +131,7 @@ def fit_joint(
     if not terms or not set(terms) <= set(TERMS):
         raise InputError(f"terms = {terms!r}: give some of {', '.join(TERMS)}")
     names = [name for name in _COLUMNS if name.split("_")[0] in terms]
-    warned = checks.Warnings(choice("anyway", anyway, (True, False)))
+    warned = recording_checks.Warnings(choice("anyway", anyway, (True, False)))
     recordings, runs = _recordings(t, q, u, qd), []
     for k, one in enumerate(recordings, 1):
         warned.who = f"recording {k}: " if len(recordings) > 1 else ""
@@ -140,7 +143,7 @@ def fit_joint(
     if len(recordings) > 1:
         options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
         least = {name: 0.0 if name in _PHYSICAL else 0.05 * unit for name in names}
-        checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), least)
+        recording_checks.check_contradiction(warned, recordings, lambda one: fit_joint([one], **options), least)
     for run in runs:
         run.u = run.u / unit
     band = _band(runs)
@@ -153,7 +156,8 @@ def fit_joint(
     slow = _SLOW * band.speed if slow is None else number("slow", slow, ">= 0", unit="rad/s")
     pair = _fits(runs, names, cutoff_hz, band.clean_hz, slow)
     if not pair:
-        raise IdentificationError(f"fewer than {checks.FEWEST // 2} independent samples are in motion: record more")
+        fewest = recording_checks.FEWEST // 2
+        raise IdentificationError(f"fewer than {fewest} independent samples are in motion: record more")
     measured = pair[1].left.rms < pair[0].left.rms if held is None else not choice("held", held, (True, False))
     found = pair[measured]
     lower = (_fits(runs, names, cutoff_hz / 2, band.clean_hz, slow) or pair)[measured]
@@ -163,7 +167,7 @@ def fit_joint(
     stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
     parameters = dict(zip(names, (unit * np.column_stack([found.left.x, stderr])).tolist(), strict=True))
     _check_fit(warned, found, others, "gravity" in terms)
-    checks.check_clipped_drive(warned, found)
+    recording_checks.check_clipped_drive(warned, found)
     _check_parameters(warned, parameters, found, lower, others)
     _check_timing(warned, lower, others, period)
     return JointFit(
@@ -201,10 +205,10 @@ def _runs(warned, recording, delay, number):
     t, q, u = columns_of(t, q, u)
     if q.shape[1] != 1 + (qd is not None):
         raise InputError(f"q has {q.shape[1]} columns: fit_joint takes one joint; give q[:, i] and u[:, i]")
-    new = checks.check_signals(warned, t, q[:, 0], u[:, 0], math.inf if wheel else checks.TURNS)
+    new = recording_checks.check_signals(warned, t, q[:, 0], u[:, 0], math.inf if wheel else recording_checks.TURNS)
     if qd is not None:
-        checks.check_outliers(warned, "qd", t, q[:, 1])
-        checks.check_measured_speed(warned, t, *q.T)
+        recording_checks.check_outliers(warned, "qd", t, q[:, 1])
+        recording_checks.check_measured_speed(warned, t, *q.T)
     options = {"cutoff_hz": None, "trim": 0.0, "delay": delay}
     held, measured = (process(t[new], q[new], u[new], held=held, **options) for held in (True, False))
     edges = np.flatnonzero(np.diff(held.segment)) + 1
@@ -238,6 +242,11 @@ def _band(runs):
     return SimpleNamespace(motion_hz=f[motion], clean_hz=f[clean], speed=speed, speed_noise=speed_noise)
 
 
+def _noise(x):
+    """Standard deviation of white noise on a smooth x (n,), from its fourth differences."""
+    return float(np.median(np.abs(np.diff(x, 4)))) / 0.6745 / math.sqrt(70)
+
+
 def _smooth(x, cutoff_hz, rate):
     return x if math.isinf(cutoff_hz) else low_pass(x, cutoff_hz, rate, order=3, kind="zero-phase")
 
@@ -261,7 +270,11 @@ def _table(runs, cutoff_hz, sign_hz, slow):
     low pass at sign_hz: a smoother speed changes its sign too early or too late.
     """
     every = np.concatenate([run.u[:, 0] for run in runs])
-    low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
+    near = min(
+        max(1e-3 * np.ptp(every), _SCATTER * _noise(np.concatenate([run.u[:, 1] for run in runs]))),
+        _NEAR_LIMIT * np.ptp(every),
+    )
+    low, high = every.min() + near, every.max() - near
     names = ("columns", "u", "slopes", "limits", "q", "v", "snap", "of")
     parts = []
     for run in runs:
@@ -289,7 +302,7 @@ def _fits(runs, names, cutoff_hz, sign_hz, slow):
     LeastSquares; misfit: residual over spread of u.
     """
     table = _table(runs, cutoff_hz, sign_hz, slow)
-    if len(table.q) < checks.FEWEST // 2:
+    if len(table.q) < recording_checks.FEWEST // 2:
         return []
     A = table.columns[:, [_COLUMNS.index(name) for name in names]]
     fits = []
@@ -339,7 +352,9 @@ def _check_fit(warned, found, others, with_gravity):
     left, gravity = found.left, others.get("gravity", found.left).rms / found.left.rms
     explained = 1 - (found.misfit * gravity) ** 2
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
-    if explained < _EXPLAINED or (F < _F and explained < 0.5):
+    if found.misfit > _POOR and (sentence := recording_checks.without_sign(found)):
+        warned.refuse(sentence)
+    elif explained < _EXPLAINED or (F < _F and explained < 0.5):
         share = f"{max(explained, 0):.1%} of it (F = {F:.1f}, needed {_F:.0f}; too few independent samples?)"
         warned.refuse(f"u does not belong to this motion, which explains {share}: another joint or clock? A spring?")
     elif F < _F:

@@ -1,5 +1,6 @@
 """How good a model is on data it has not seen, as Table 4.4 on raw PWM; and whether its residuals are white."""
 
+from collections import namedtuple
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,6 +49,11 @@ def nrmse_fit(measured, predicted):
 
     Args: measured, predicted: (n,) or (n, k). Returns: (rms, fit), numbers or (k,). Raises InputError on shapes that
     differ, numbers that are not finite, or a measured column that never changes.
+
+    >>> from ir50p_lab.identification import nrmse_fit
+    >>> rms, fit = nrmse_fit([0, 1, 2, 3], [0, 1, 2, 2.9])
+    >>> round(float(rms), 3), round(float(fit), 1)
+    (0.05, 95.5)
     """
     y, p = finite("measured", measured), finite("predicted", predicted)
     if y.shape != p.shape or y.ndim not in (1, 2) or len(y) < 2:
@@ -79,26 +85,21 @@ def validate(estimate, recording, q=None, u=None, *, derivatives=BOTH, cutoff_hz
     inside = (acts >= motion.t[after - 1]) & (acts <= motion.t[after])
     inside &= motion.segment[after] == motion.segment[after - 1]
     found = np.column_stack([np.interp(acts[inside], motion.t, p) for p in predicted.T])
-    return compared(t[inside], u[inside], found, "u")
+    return compare_signals(t[inside], u[inside], found, "u")
 
 
-def compared(t, measured, predicted, of):
+def compare_signals(t, measured, predicted, of):
     """Validation of "u" or "q", (n, 3) each."""
     rms, fit = nrmse_fit(measured, predicted)
     return Validation(rms=rms, fit=fit, t=t, measured=measured, predicted=predicted, of=of)
 
 
-@dataclass(frozen=True, eq=False)
-class Whiteness:
+class Whiteness(namedtuple("Whiteness", "lags correlation bound")):
     """Autocorrelation of residuals, column by column.
 
     lags (m,) samples; correlation (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
     if the residuals are white: what a good model leaves is noise, which no earlier sample predicts.
     """
-
-    lags: np.ndarray
-    correlation: np.ndarray
-    bound: float
 
 
 def whiteness(residuals):

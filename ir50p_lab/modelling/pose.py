@@ -7,7 +7,7 @@ Every function is vectorised: leading dimensions ``...`` are kept.
 SciPy does the rotations. It takes half a second to import, so it is imported on first use.
 """
 
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy as np
 
@@ -41,7 +41,15 @@ def rot_y(angle):
 
 
 def rot_z(angle):
-    """Rotation about z by `angle` (...) rad, (1.6): (...,3,3). Raises InputError for NaN or infinity."""
+    """Rotation about z by `angle` (...) rad, (1.6): (...,3,3). Raises InputError for NaN or infinity.
+
+    >>> import numpy as np
+    >>> from ir50p_lab.modelling import rot_z
+    >>> rot_z(np.pi / 2).round(3)
+    array([[ 0., -1.,  0.],
+           [ 1.,  0.,  0.],
+           [ 0.,  0.,  1.]])
+    """
     return _elementary("Z", angle)
 
 
@@ -105,8 +113,7 @@ def rate_matrix(sequence, angles):
     return np.stack([e_1, R_1[..., :, second], R_12[..., :, third]], axis=-1)
 
 
-@dataclass(frozen=True)
-class GimbalLock:
+class GimbalLock(namedtuple("GimbalLock", "sine gain lost_axis")):
     """How close three angles are to the singularity of their sequence, and what is lost there.
 
     sine: (...) sine of the angle between first and third axis, |det E|: 1 at best, 0 at the singularity.
@@ -115,10 +122,6 @@ class GimbalLock:
     lost_axis: (...,3) unit vector in the first frame: the turn that asks for it, which no angle rate can
         make at the singularity. Its sign is of no meaning.
     """
-
-    sine: np.ndarray
-    gain: np.ndarray
-    lost_axis: np.ndarray
 
 
 def gimbal_lock(sequence, angles):

@@ -9,7 +9,7 @@ import sympy
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import choice
-from ir50p_lab.modelling import symbolic_steps as steps
+from ir50p_lab.modelling import derivation
 from ir50p_lab.modelling.symbolic_display import Formulas, short_names
 
 _COM_AND_INERTIA = {
@@ -154,14 +154,14 @@ def derive(*, links="in-line", general=False):
 
     @cache  # the same sums come back
     def formula(expression):
-        return steps.ordered(expression, by)
+        return derivation.ordered(expression, by)
 
-    frames, rotations = steps.chain(q, *(symbols[name] for name in ("l1", "l2", "l3")))
-    centres, tensors = steps.bodies(symbols, links, frames, rotations)
+    frames, rotations = derivation.chain(q, *(symbols[name] for name in ("l1", "l2", "l3")))
+    centres, tensors = derivation.bodies(symbols, links, frames, rotations)
     Jv = [p.jacobian(q) for p in centres]
-    Jw = steps.angular_jacobians(frames)
-    M = steps.mass_matrix(q, symbols, Jv, Jw, tensors).applyfunc(formula)
-    b = [[list(map(formula, row)) for row in block] for block in steps.christoffel(q, M)]
+    Jw = derivation.angular_jacobians(frames)
+    M = derivation.mass_matrix(q, symbols, Jv, Jw, tensors).applyfunc(formula)
+    b = [[list(map(formula, row)) for row in block] for block in derivation.christoffel(q, M)]
     potential = formula(symbols["g"] * sum(symbols[f"m{i + 1}"] * centres[i][2] for i in range(3)))
 
     def tidy(matrix):

@@ -9,7 +9,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "plant": ["make_plant"],
-        "result": ["SimulationResult"],
+        "simulation_result": ["SimulationResult"],
         "simulate": ["simulate"],
         "sweep": ["Failure", "SweepResult", "sweep"],
     },

@@ -2,8 +2,8 @@
 
 import hashlib
 import json
+from collections import namedtuple
 from concurrent.futures import as_completed
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,22 +11,12 @@ import numpy as np
 from ir50p_lab.errors import InputError
 
 
-@dataclass(frozen=True)
-class Failure:
+class Failure(namedtuple("Failure", "index case error")):
     """A case that raised: its number, the case, and the error as one line."""
 
-    index: int
-    case: object
-    error: str
 
-
-@dataclass(frozen=True)
-class SweepResult:
+class SweepResult(namedtuple("SweepResult", "cases results failures")):
     """cases and results in the order given (None where it failed); failures: list of Failure."""
-
-    cases: list
-    results: list
-    failures: list
 
 
 def sweep(run, cases, *, executor=None, progress=True, save_to=None):

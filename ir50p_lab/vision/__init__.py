@@ -16,7 +16,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "calibration.calibrate": ["calibrate", "calibrate_corners"],
         "calibration.board": ["Checkerboard"],
         "calibration.reject_reasons": ["Reason", "Rejected"],
-        "calibration.result": ["Calibration"],
+        "calibration.calibration_result": ["Calibration"],
         "ball.find": ["Ball", "Balls", "find_balls"],
         "board_pose": ["board_points", "board_pose"],
         "ball.colour": ["RED", "Colour", "learn_colour"],

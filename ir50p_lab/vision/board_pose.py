@@ -3,8 +3,8 @@
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError
+from ir50p_lab.vision.arguments import point_list, rigid
 from ir50p_lab.vision.calibration.board import Checkerboard
-from ir50p_lab.vision.checks import point_list, rigid
 from ir50p_lab.vision.pinhole import as_pinhole
 
 _WORST_RMS = 5.0  # px: if corners miss the board by more, it has another size, or they are in another order
@@ -22,7 +22,7 @@ def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
     """
     grid = Checkerboard(pattern, square).points
     lies = np.diag([1.0, -1.0, -1.0, 1.0]) if T_table_board is None else T_table_board
-    return moved(rigid("T_table_board", lies), grid)
+    return transform_points(rigid("T_table_board", lies), grid)
 
 
 def board_pose(camera, corners, points):
@@ -67,6 +67,6 @@ def inverse_transform(T):
     return back
 
 
-def moved(T, points):
+def transform_points(T, points):
     """Points (n, 3) or (3,) under the transform T (4, 4)."""
     return points @ T[:3, :3].T + T[:3, 3]

@@ -2,7 +2,7 @@
 
 import contextlib
 import time
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy as np
 
@@ -14,13 +14,8 @@ _PATIENCE = 3.0  # s: if no picture comes for so long, the webcam counts as unpl
 _AT_ONCE = 0.005  # s: if a picture comes sooner, it has waited in the driver, and is old
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Frame:
+class Frame(namedtuple("Frame", "image simulated source")):
     """One picture: image (h, w, 3) uint8, red green blue; simulated: rendered, not photographed; source: its camera."""
-
-    image: np.ndarray
-    simulated: bool
-    source: str
 
     def save(self, path):
         """Write the picture to a file; a rendered one carries a mark (PNG and JPEG). Raises ImageError."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import numbers
-from ir50p_lab.vision.checks import coordinates, picture_size, rigid
+from ir50p_lab.vision.arguments import coordinates, picture_size, rigid
 
 _STEPS = 200  # most iterations that take out distortion: they converge slowly near the radius where it folds back
 
@@ -30,6 +30,10 @@ class Pinhole:
         size: (width, height) of the picture, pixels.
 
     Raises InputError for a K that is no intrinsic matrix, a wrong number of coefficients, or a size below 1.
+
+    >>> from ir50p_lab.vision import Pinhole
+    >>> Pinhole.simple(700).rays([319.5, 239.5])
+    array([0., 0., 1.])
     """
 
     K: np.ndarray

@@ -5,6 +5,7 @@ Everything about the room is assumed; noise, blur and compression are those of a
 """
 
 import functools
+from collections import namedtuple
 from dataclasses import dataclass
 
 import cv2
@@ -82,33 +83,20 @@ class Scene:
     exposure: float = 1.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class BallTruth:
+class BallTruth(namedtuple("BallTruth", "x y radius outline_x outline_y position colour")):
     """Where a ball is seen; NaN if it is not in front of the camera.
 
     x, y: projected centre of the sphere, px; radius: of the circle as large as its image, px; outline_x, outline_y:
     middle of that image, px, which lies elsewhere; position: (3,) m; colour.
     """
 
-    x: float
-    y: float
-    radius: float
-    outline_x: float
-    outline_y: float
-    position: tuple
-    colour: str | tuple
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SceneTruth:
+class SceneTruth(namedtuple("SceneTruth", "balls pinhole")):
     """The truth of one rendered picture: its balls, in the order of the scene, and the camera."""
-
-    balls: tuple
-    pinhole: Pinhole
 
     @property
     def red_balls(self):
-        """Those of the colour "red", largest first."""
+        """The red balls, largest first."""
         return tuple(sorted((ball for ball in self.balls if ball.colour == "red"), key=lambda ball: -ball.radius))
 
 
@@ -333,5 +321,4 @@ def _truth(scene, ball):
             m = cv2.moments(np.float32(rim - middle))
             shift = np.array([m["m10"], m["m01"]]) / m["m00"]
             numbers = [*xy, np.sqrt(m["m00"] / np.pi), *(middle + shift)]
-    names = ("x", "y", "radius", "outline_x", "outline_y")
-    return BallTruth(**dict(zip(names, map(float, numbers), strict=True)), position=ball.position, colour=ball.colour)
+    return BallTruth(*map(float, numbers), ball.position, ball.colour)

@@ -4,8 +4,8 @@ import numpy as np
 
 from ir50p_lab.errors import CalibrationError, InputError, VisionError
 from ir50p_lab.inputs import number
+from ir50p_lab.vision.arguments import check_picture_size, point_list, rigid
 from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform
-from ir50p_lab.vision.checks import check_picture_size, point_list, rigid
 from ir50p_lab.vision.pinhole import as_pinhole
 
 _SLANT = 0.02  # rad: if a line of sight meets the plane at a smaller angle, where it does is unknown

@@ -332,9 +332,9 @@ def test_time_is_kept_without_drift():
 class Answering(SimulatedBench):
     """A bench whose answers take 0, 2 and 4 ms, in turn."""
 
-    def _measure(self, cycle, drive):
+    def measure(self, cycle, drive):
         time.sleep(0.002 * (cycle % 3))
-        return super()._measure(cycle, drive)
+        return super().measure(cycle, drive)
 
 
 def test_the_period_is_that_of_the_cycles_not_of_the_answers():

@@ -8,7 +8,7 @@ from fake_board import FakeBoard
 from ir50p_lab.bench import JointCalibration, SerialBench, SimulatedBench, connect, nominal_calibration
 from ir50p_lab.bench import ports as port_list
 from ir50p_lab.bench.ports import Port
-from ir50p_lab.bench.result_files import add
+from ir50p_lab.course.lab_book.results import add
 from ir50p_lab.errors import BoardError, InputError, PortError, RecordingError
 from ir50p_lab.modelling import IR50P
 
@@ -213,14 +213,14 @@ def test_a_board_takes_only_a_calibration_measured_on_it(computer, said, monkeyp
     for k, where in enumerate(("simulated-unit-0", "board-0a0b0c")):
         zero = tuple(z + 5 + k for z in nominal.zero)
         about = {"arm": "IR50P", "bench": where, "unit": "", "seed": "", "simulated": k == 0}
-        add("calibration", ".toml", JointCalibration(nominal.slope, zero, source="x").save, bench_id=where, **about)
+        add("calibration", JointCalibration(nominal.slope, zero, source="x").save, bench_id=where, **about)
     computer({"COM3": (MEGA, mine)})
     with connect() as bench:
         assert bench.calibration == nominal and "calibration: nominal, not measured" in said()
         here = bench.give_id()
     zero = tuple(z + 9 for z in nominal.zero)
     measured = JointCalibration(nominal.slope, zero, source="on Monday")
-    add("calibration", ".toml", measured.save, **about | {"bench_id": here})
+    add("calibration", measured.save, **about | {"bench_id": here})
     mine.is_open = True
     with connect() as bench:
         assert bench.calibration.zero == zero and "calibration: yours, calibration-3 (on Monday)" in said()

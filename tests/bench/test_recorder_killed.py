@@ -70,7 +70,7 @@ def test_a_full_disk_cuts_the_drive_and_says_so(tmp_path, monkeypatch):
         for _ in bench.run(5):
             bench.drive([100, 0, 0])
             assert bench.cuts == 0
-    assert bench.cuts >= 1 and not bench._pwm.any()
+    assert bench.cuts >= 1 and not bench.command.any()
     loaded = Recording.load(bench.recording.path)
     np.testing.assert_allclose(loaded.u, np.tile([100, 0, 0], (len(loaded), 1)))
     assert 5 < len(loaded) == len(bench.recording) - 1 < 100

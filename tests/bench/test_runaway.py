@@ -186,7 +186,7 @@ def test_no_false_alarm_in_long_ordinary_runs(arm):
         for far in (0.5, 1.9):
             goal = np.clip(q + rng.uniform(-far, far, 3), arm.q_min, arm.q_max)
             bench.follow(pid, hold(goal), 20.0)
-            q = np.clip(bench._last.q, arm.q_min, arm.q_max)
+            q = np.clip(bench.last.q, arm.q_min, arm.q_max)
 
 
 class Pushed:

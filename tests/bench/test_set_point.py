@@ -73,7 +73,7 @@ def test_it_takes_over_a_motion():
 def test_a_target_is_led_in_from_the_pose_and_ends_on_the_reference():
     swing = sinusoid(0.3, 2.0, offset=0.5, phase=np.pi / 2)
     here = np.array([0.0, 0.1, 0.2])
-    standing = SimpleNamespace(arm=IR50P, _last=SimpleNamespace(q=here))
+    standing = SimpleNamespace(arm=IR50P, last=SimpleNamespace(q=here))
     target = _Target(standing, swing)
     times = 7.0 + np.arange(400) * 0.01
     rows = np.array([target(t) for t in times])

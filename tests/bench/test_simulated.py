@@ -126,14 +126,14 @@ def test_a_reference_that_is_no_number_cuts_the_drive(bench):
         bench.follow(pid(), Breaks(), 30)
     assert len(bench.recording) == 1057
     assert len(Recording.load(bench.recording.path)) == 1057
-    assert (bench._pwm == 0).all() and (bench._queue == 0).all()
+    assert (bench.command == 0).all() and (bench._queue == 0).all()
 
 
 def test_ctrl_c_in_a_compiled_run_keeps_what_was_recorded(bench):
     with pytest.raises(KeyboardInterrupt):
         bench.follow(pid(), Breaks(KeyboardInterrupt()), 30)
     assert len(Recording.load(bench.recording.path)) == 1000
-    assert (bench._pwm == 0).all()
+    assert (bench.command == 0).all()
 
 
 def test_follow_takes_any_controller_and_reference(bench):

@@ -73,8 +73,8 @@ def go_through(page, path):
         source = cells[number].source
         if guess := re.match(r'predict\("([^"]+)", \.\.\.', source):
             predicted.append(guess[1])
-            choices = re.search(r"choices=\((.*?)\)", source)
-            guessed = choices[1].split(",")[1].strip() if choices else "1.25"
+            choices = re.search(r"choices=[({](.*?)[)}]", source)
+            guessed = choices[1].split(",")[1].partition(":")[0].strip() if choices else "1.25"
             assert "your guess is" in run(page, number, source.replace("...", guessed, 1))
         if source.startswith("why("):
             assert "noted" in run(page, number, source.replace("...", "as it had to come", 1))

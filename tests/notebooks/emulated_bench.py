@@ -109,14 +109,14 @@ def allow_the_cable(board):
     file = Path(os.environ["IR50P_HOME"], "bench.toml")
     file.write_text(f"[{bench.bench_id}]\nspeed = 3\nfaults = ['cable']")
     os.environ["IR50P_BENCH_FILE"] = str(file)
-    make = drive_views.make
+    make = drive_views.cause_fault
 
     def make_and_pull(fault, bench):
         make(fault, bench)  # asks for it
         if fault == "cable":
             board.unplug()
 
-    drive_views.make = make_and_pull
+    drive_views.cause_fault = make_and_pull
 
 
 def plug_in_again(board):

@@ -52,7 +52,7 @@ class Simulated(Rig):
         return SimulatedBench(q0=self.q0, **options)
 
     def drive_on_the_arm(self):
-        waiting = np.vstack([self.made._queue, self.made._pwm])  # commands that act yet, the largest of each joint
+        waiting = np.vstack([self.made._queue, self.made.command])  # commands that act yet, the largest of each joint
         return waiting[np.abs(waiting).argmax(axis=0), range(3)]
 
     def q(self):

@@ -40,8 +40,8 @@ class FileBench(Bench):
     def _make_pace(self):
         return Pace(self._clock, self.period)
 
-    def _measure(self, cycle, drive):
-        self._q = self._q + 2e-4 * self._pwm
+    def measure(self, cycle, drive):
+        self._q = self._q + 2e-4 * self.command
         return self._clock.now() - self._run.pace.start, self.calibration.counts(self._q), False
 
     def _send(self, pwm, gripper):

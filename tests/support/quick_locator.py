@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.vision.board_pose import moved
+from ir50p_lab.vision.board_pose import transform_points
 from ir50p_lab.vision.reaching.ball_locator import BallLocator, Seen
 
 
@@ -21,7 +21,7 @@ class QuickLocator(BallLocator):
         if self.no_ball:
             return Seen(None, None, None, True, self.no_ball)
         xy = self._pixel(self.camera.balls_true[0])
-        place = moved(self.T_base_table, self.plane.to_points(xy, self.radius))
+        place = transform_points(self.T_base_table, self.plane.to_points(xy, self.radius))
         return Seen(place, None, None, True)
 
     def find_marker(self, image, arm, q):

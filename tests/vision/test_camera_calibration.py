@@ -9,8 +9,8 @@ from board_pictures import LENS, SIZE, K, corner_sets, look, painted_set, projec
 
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import Checkerboard, Pinhole, Reason, calibrate, calibrate_corners
+from ir50p_lab.vision.calibration.calibration_result import NAMES
 from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, height
-from ir50p_lab.vision.calibration.result import NAMES
 
 pytestmark = pytest.mark.numeric
 POINTS = Checkerboard().points

@@ -25,7 +25,7 @@ from ir50p_lab.vision import (
     work_area,
 )
 from ir50p_lab.vision.reaching.budget import error_budget
-from ir50p_lab.vision.reaching.result import BallTracker
+from ir50p_lab.vision.reaching.reach_result import BallTracker
 from tests.support.places import places_in
 from tests.targets.vision_reaching import oracle_reaches
 from tests.targets.vision_setup import calibrated
@@ -334,7 +334,7 @@ def test_a_camera_that_dies_cuts_the_drive():
     locator.look = unplugged
     with pytest.raises(CameraError), bench:
         reach(bench, locator)
-    assert (bench._pwm == 0).all()
+    assert (bench.command == 0).all()
 
 
 class Real:
@@ -369,7 +369,7 @@ def test_a_real_arm_does_not_reach_for_a_rendered_ball():
             bench.simulated, bench.realtime = False, True  # the camera says nothing, its picture does
             task(reacher)
         bench.simulated, bench.realtime = True, False
-        assert (bench._pwm == 0).all()
+        assert (bench.command == 0).all()
         assert np.abs(bench.plant.q_true - before).max() < 0.05
 
 

@@ -45,7 +45,7 @@ def circle_in_use(circle, arm, centre, radius, first, lap):
 
 
 def _no_angles(circle, lap, place):
-    """Why circle(t) is no function of the time that gives numbers (3, 3), in a sentence; "" if it is."""
+    """Return why circle(t) does not give numbers (3, 3) that depend on t alone, in a sentence; "" if it does."""
     asked, given = np.r_[np.linspace(0, lap, 9), -1, lap + 1], []
     try:
         for t in (*asked, *asked[::-1]):
@@ -60,7 +60,7 @@ def _no_angles(circle, lap, place):
 
 
 def go(controller, reference, seconds):
-    """The loop of notebook 08, on a real arm with the student's calibration: the Recording; afterwards the arm rests."""
+    """The loop of notebook 08, on a real arm with the student's calibration. Returns: Recording."""
     with arm_that_answers("calibration", q0=rest_pose(load_arm())) as bench:
         next(bench.run(seconds=0.02, record=False))  # where is it?
         bench.go_to_rest()
@@ -74,7 +74,7 @@ _STARTS = 0.5 + 1.2 * np.arange(8)  # s, of the pushes
 
 
 def eight_pushes(bench):
-    """Eight pushes of 200 counts at the waist, 0.4 s each, to and fro; nobody looks at the angle. Returns: Recording."""
+    """Eight pushes of 200 counts at the waist, 0.4 s each, to and fro, whatever the angles. Returns: Recording."""
     for sample in bench.run(seconds=10.1, note="first motion"):
         since = sample.t - _STARTS
         now = np.flatnonzero((since > -0.001) & (since < 0.399))  # which push, if any
@@ -125,7 +125,7 @@ class Filtered:
         self._share = my_robot.low_pass(np.array([0.0, 1.0]), cutoff_hz, 100)[1]  # of a jump, after one sample
 
     def reset(self):
-        """Before a run."""
+        """Forget the run before."""
         self._seen = None
         self.controller.reset()
 
@@ -157,7 +157,7 @@ def circle_figure(centre, radius, recording, wanted, **tips):
     return figure
 
 
-def simulated(arm, controller, reference, seconds, *, late=0.02, **options):
+def run_simulated(arm, controller, reference, seconds, *, late=0.02, **options):
     """The loop of the lesson on a simulated arm, as fast as it can, not kept on disk.
 
     late: s from sample to action, in whole samples; options: of SimulatedBench.
@@ -173,7 +173,7 @@ def simulated(arm, controller, reference, seconds, *, late=0.02, **options):
     return bench
 
 
-def arm_to_break(fault, **options):
+def bench_for_faults(fault, **options):
     """An open bench on which `fault` may be made: the simulated arm, unless the lab's own file allows it here."""
     bench = arm_that_answers(**options)
     try:
@@ -185,7 +185,7 @@ def arm_to_break(fault, **options):
     return bench
 
 
-def make(fault, bench):
+def cause_fault(fault, bench):
     """Make a fault at joint 1 of a simulated arm, or stop this process for 0.7 s; a real arm needs a hand."""
     plant = getattr(bench, "plant", None)
     if fault == "process":
@@ -199,19 +199,19 @@ def make(fault, bench):
         counts = plant.counts
         plant.counts = lambda: np.array([1023.0, *counts()[1:]])
     else:
-        bench._measure = lambda cycle, drive: _gone(bench)
+        bench.measure = lambda cycle, drive: _cable_pulled(bench)
 
 
-def _gone(bench):
+def _cable_pulled(bench):
     """A pulled cable: the board hears nothing more, and cuts the drive by itself after 0.1 s."""
-    bench.plant.advance(bench._pwm, 0.1)
+    bench.plant.advance(bench.command, 0.1)
     raise BoardLostError(
         "the board is gone: it brakes by itself 0.1 s after the last command, then gravity has the arm"
     )
 
 
-def aftermath(bench, fault_at=1.0):
-    """What a fault has done: s until the run ended, degrees the waist turned in them, mm the tip has sunk since.
+def after_fault(bench, fault_at=1.0):
+    """Return s from the fault to the end of the run, degrees the waist turned meanwhile, mm the tip has sunk since.
 
     Of a simulated arm the truth; of a real one what was measured, and nobody knows (nan) how far it sank.
     """

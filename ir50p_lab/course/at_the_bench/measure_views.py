@@ -12,7 +12,7 @@ _HANDS = count()  # a hand that reads again reads with other errors
 _RULER = np.random.default_rng(0)
 
 
-def by_hand(arm, poses):
+def moved_by_hand(arm, poses):
     """Hold a simulated arm about each of the poses (n, 3) rad, within some degrees; its table is taken away.
 
     Read again, it scatters anew.
@@ -41,10 +41,10 @@ def counts_by_hand():
     return np.mean(rows, axis=0)
 
 
-def pencils(x, fit, at):
-    """Lines as sure as a fit (slope, offset, covariance), by its diagonal alone and by the whole: LabFigure.
+def error_bands(x, fit, at):
+    """Draw lines from the uncertainty of a fit (slope, offset, covariance): with its diagonal, and with all of it.
 
-    Args: x: (n,) counts, of the readings; at: counts at which the lines are used.
+    Args: x: (n,) counts, of the readings; at: counts at which the lines are used. Returns: LabFigure.
     """
     figure, *axes = subplots(9.0, 3.2, cols=2)
     ends = np.array([min(0, *x), max(x)])
@@ -57,8 +57,8 @@ def pencils(x, fit, at):
     return figure
 
 
-def leftovers(angles, left):
-    """What lines leave, (n, 3) mrad over angles (n, 3) rad; a parabola shows whether it bows: LabFigure."""
+def residuals(angles, left):
+    """Plot residuals (n, 3) mrad over angles (n, 3) rad, each with a parabola that shows a bow: LabFigure."""
     figure, *axes = subplots(9.0, 2.9, cols=3)
     for ax, q, rest, label in zip(axes, angles.T, left.T, JOINT_LABELS, strict=True):
         ax.axhline(0, **SETPOINT)

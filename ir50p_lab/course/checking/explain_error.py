@@ -31,7 +31,7 @@ def why_it_stops(error):
 
 def _usual(error):
     """The usual reason in plain words, by the kind of an error and by what its message holds; or ""."""
-    for why, signs in table("stops"):
+    for why, signs in table("explain_error"):
         for kind, _, part in (sign.partition(": ") for sign in signs):
             if kind.rstrip(":") == type(error).__name__ and part in str(error):
                 return why

@@ -46,20 +46,40 @@ def changed(text, changes, names):
     return names
 
 
-@cache
-def table(name, beside=__file__):
-    """A table of mistakes, NAME.txt beside a module: pairs (what to say, lines), most specific first.
-
-    A paragraph each: the sentence, and indented below it what it is said of; of a solution that is its changes.
-    """
-    paragraphs = Path(beside).with_name(f"{name}.txt").read_text(encoding="utf-8").strip().split("\n\n")
-    rows = (paragraph.split("\n    ") for paragraph in paragraphs)
+def _rows(text):
+    rows = (paragraph.split("\n    ") for paragraph in text.strip().split("\n\n") if paragraph)
     return [(says.replace("\n", " "), lines) for says, *lines in rows]
 
 
-def sentences(function):
-    """What a task says where no mistake of the table fits: {key: sentence}, out of NAME.says.txt."""
-    return {key: says for says, (key,) in table(f"{function.__name__}.says", inspect.getfile(function))}
+@cache
+def table(name, beside=__file__):
+    """The paragraphs of NAME.txt beside a module: pairs (what to say, lines indented below it)."""
+    return _rows(Path(beside).with_name(f"{name}.txt").read_text(encoding="utf-8"))
+
+
+@cache
+def sections(name, beside):
+    """The parts of NAME.txt beside a module: {heading: text}; a heading stands behind "# "."""
+    text = Path(beside).with_name(f"{name}.txt").read_text(encoding="utf-8")
+    _, *parts = re.split(r"^# (.+)\n", text, flags=re.MULTILINE)
+    return {heading: part.strip() for heading, part in zip(parts[::2], parts[1::2], strict=True)}
+
+
+def sentences(name, beside):
+    """What is said where no mistake of the table fits: {key: sentence}, from lines "key: sentence"."""
+    lines = re.sub(r"\n +", " ", sections(name, beside).get("otherwise", "")).splitlines()
+    return dict(line.split(": ", 1) for line in lines)
+
+
+def changes_of(text):
+    """Pairs (sentence, changes) of a table of mistakes, most specific first.
+
+    Below a sentence stands, indented, what makes the mistake out of the solution: its changes, "old  ->  new", one a
+    line. A line that begins with "or:" starts another way to make it.
+    """
+    for says, lines in _rows(text):
+        for way in "\n".join(lines).split("\nor: "):
+            yield says, way.split("\n")
 
 
 def wrong_one(function, changes):
@@ -69,8 +89,8 @@ def wrong_one(function, changes):
 
 def mistakes(function):
     """The mistakes in the table of a function."""
-    rows = table(function.__name__, inspect.getfile(function))
-    return tuple(Mistake(wrong_one(function, changes), says) for says, changes in rows)
+    text = sections(function.__name__, inspect.getfile(function)).get("mistakes", "")
+    return tuple(Mistake(wrong_one(function, changes), says) for says, changes in changes_of(text))
 
 
 def solutions(name, beside):
@@ -125,6 +145,7 @@ class Task:
     tried: Callable | None = None
     test: str = ""
     signature: tuple = ()
+    given: str = ""  # text of helpers that the notebook shows: a student need not write them
     function: str = ""  # its name; that of a stage is longer
     result: int | None = None  # which of several results it is about, in a trial of one alone
 
@@ -174,16 +195,21 @@ class Task:
 
 
 def task_of(right, *, helpers=(), **options):
-    """The Task of a function: its text is the loan; in NAME.txt stand its slips, in NAME.routes.txt other solutions.
+    """The Task of a function of the course: its text is the loan, all sentences on it stand in NAME.txt beside it.
 
-    NAME.words.txt: what it returns, and its two hints. NAME.test.txt: its small test where one of plain numbers will
-    not do. helpers: functions that it calls and a student has to write along; options: what else a Task has.
+    helpers: functions that it calls and a student has to write along; options: what else a Task has.
     """
     name, file = right.__name__, inspect.getfile(right)
-    asks, *hints = (says for says, _ in table(f"{name}.words", file))
-    texts = {"routes": solutions(f"{name}.routes", file), "test": "\n".join((*solutions(f"{name}.test", file), ""))}
-    options = {"slips": mistakes(right), "hints": tuple(hints)} | texts | options
-    return Task(name=name, asks=asks, right=right, loan=text_of(*helpers, right), **options)
+    options = {"slips": mistakes(right), "routes": solutions(f"{name}.routes", file)} | words(name, file) | options
+    return Task(name=name, right=right, loan=text_of(*helpers, right), **options)
+
+
+def words(name, beside):
+    """Options of a Task from NAME.txt: what it returns, two hints, its small test if one of numbers will not do."""
+    text = sections(name, beside)
+    hints = tuple(hint.replace("\n", " ") for hint in text["hints"].split("\n\n"))
+    test = text["test"] + "\n" if "test" in text else ""
+    return {"asks": text["returns"].replace("\n", " "), "hints": hints, "test": test}
 
 
 def _agrees(returned, expected, same, tolerance):

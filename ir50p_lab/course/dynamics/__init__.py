@@ -5,6 +5,7 @@ from ir50p_lab import lazy
 __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
+        "driven_arm": ["driven"],
         "governor_view": ["GovernorView"],
     },
 )

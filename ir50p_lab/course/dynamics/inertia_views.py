@@ -3,7 +3,6 @@
 And what stands in for a function of the notebook, `heaviness`, that no check keeps.
 """
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +11,6 @@ from ir50p_lab.course.draw.arm3d import SideView
 from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.dynamics import mass_matrix
-from ir50p_lab.simulation import simulate
 
 
 class InertiaView:
@@ -77,7 +75,7 @@ def kilograms(arm, q, angles, masses):
         *np.array([tip - heaviest, tip + heaviest]).T, color=COLOURS["orange"], linewidth=2, label="heaviest way"
     )
     plane.legend(loc="upper left")
-    ax.set(aspect="equal", xlabel="outwards [kg]", ylabel="upwards [kg]", title="As far from the middle as heavy")
+    ax.set(aspect="equal", xlabel="outwards [kg]", ylabel="upwards [kg]", title="The farther out, the heavier")
     ax.legend()
     return figure
 
@@ -92,7 +90,6 @@ def heaviness(arm, q, direction):
     return 1 / start if start > 1e-12 else np.inf
 
 
-def pushed(arm, torque, seconds):
-    """The stretched arm in space, without friction, under a constant torque (3,) N m: SimulationResult."""
-    push = SimpleNamespace(step=lambda t, q, reference: torque)
-    return simulate(replace(arm.without_friction(), g=0.0), push, duration=seconds, period=0.005)
+def motion(way, step):
+    """Poses (n, 3) rad, one every `step` s, as `LiveArm` plays them."""
+    return SimpleNamespace(t=step * np.arange(len(way)), q=np.array(way), simulated=True)

@@ -13,6 +13,8 @@ _BEST = np.sqrt(_LOAD / _ROTOR)
 _POSE, _STALL = np.radians([0, 30, -60]), 7.0  # rad, N m
 _PER_KG, _STRETCHED = IR50P.g * jacobian(IR50P, _POSE)[2, 1], IR50P.g * IR50P.reach  # N m/kg
 _HEAVIEST = (_STALL - gravity(IR50P, _POSE)[1]) / _PER_KG
+_DEGREES = np.remainder([0, 30, -60], 2 * np.pi)  # taken for radians
+_BY_DEGREES = (_STALL - gravity(IR50P, _DEGREES)[1]) / (IR50P.g * jacobian(IR50P, _DEGREES)[2, 1])
 
 NUMBERS = (
     Number(
@@ -39,6 +41,7 @@ NUMBERS = (
         why="Bending the elbow brings the load in: stretched and level it is a quarter less.",
         slips={
             "The arm itself weighs on the shoulder, too: the load gets what it leaves of the torque.": _STALL / _PER_KG,
+            "The angles are taken in degrees: cos and sin want radians.": _BY_DEGREES,
             "That is a force in N; a kilogram weighs 9.81 N.": IR50P.g * _HEAVIEST,
             "That is the lever of the stretched arm: how far outwards is the tip here?": _HEAVIEST
             * _PER_KG

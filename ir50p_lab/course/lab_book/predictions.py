@@ -44,7 +44,7 @@ def predict(name, guess, unit="", *more, within=0.1, choices=()):
     not count. Until it is measured, a guess may be replaced once; one that comes later is shown, but does not count.
 
     Args: guess: a number. within: how far it may be off before `measured` asks why, as a share of what is measured.
-    choices: numbers of which the guess has to be one. more: what a decimal comma leaves over.
+    choices: numbers of which the guess is one, or {number: what it means}. more: what a decimal comma leaves over.
     """
     if refusal := _refusal(guess, unit, more, choices):
         print(f"{name}: {refusal}")
@@ -52,6 +52,8 @@ def predict(name, guess, unit="", *more, within=0.1, choices=()):
 
     def edit(book):
         entry = book["predictions"].setdefault(name, {})
+        if isinstance(choices, dict):
+            entry["words"] = {f"{number:g}": word for number, word in choices.items()}
         return _take_guess(entry, float(guess), unit, 0 if choices else within)
 
     print(f"{name}: {change(edit)}")
@@ -78,10 +80,11 @@ def measured(name, value, unit=""):
     if "guess" not in entry:
         print(f"{name}: {_say(value, unit)}")
         return
-    off = entry["guess"] - value
-    print(f"{name}: you guessed {_say(entry['guess'], unit)}, it is {_say(value, unit)}, {_say(off, unit, '+')} off.")
+    words = entry.get("words", {})
+    guess, truth = (words.get(f"{number:g}", _say(number, unit)) for number in (entry["guess"], value))
+    print(f"{name}: you guessed {guess}, it is {truth}")
     within = entry.get("within", 0.1)  # a guess of an earlier version has none
-    if abs(off) > within * abs(value) and "why" not in entry:
+    if abs(entry["guess"] - value) > within * abs(value) and "why" not in entry:
         print(f'Why? One sentence: why("{name}", "...")')
 
 
@@ -153,7 +156,7 @@ def _refusal(guess, unit, more, choices):
     """Say why this is no prediction; "" for one that is."""
     if more or not isinstance(unit, str) or "," in str(guess):
         return "a decimal comma? Python takes 0,35 for two numbers: write 0.35. Nothing was written down."
-    asked = f"one of {', '.join(map(str, choices))}" if choices else f"one number, in {unit}" if unit else "one number"
+    asked = f"one of {', '.join(map(str, choices))}" if choices else f"one number ({unit})" if unit else "one number"
     if guess is ...:
         return f"put your guess in place of the dots, {asked}. Then run the cell."
     try:
@@ -194,5 +197,5 @@ def _write(entry, key, value):
     entry.update({key: value, time: now()})
 
 
-def _say(value, unit, sign=""):
-    return f"{value:{sign}.4g} {unit}".strip()
+def _say(value, unit):
+    return f"{value:.4g} {unit}".strip()

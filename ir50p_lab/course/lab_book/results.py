@@ -1,14 +1,19 @@
-"""The chain of the student's own results: calibration (10), model (12), camera (17), each for the bench it is from."""
+"""The chain of the student's own results: calibration (10), model (12), camera (17), each for the bench it is from.
+
+What a bench needs of them (`connect()` takes the calibration) is read in `bench.result_files`; all is written here.
+"""
 
 import dataclasses
 import json
+from datetime import datetime
 
 import numpy as np
 
-from ir50p_lab.bench import result_files
 from ir50p_lab.bench.connect import connect
+from ir50p_lab.bench.result_files import Result, every, folder, newest
 from ir50p_lab.bench.simulated import SimulatedBench
 from ir50p_lab.errors import InputError, NotMeasuredError
+from ir50p_lab.home import replace_text
 from ir50p_lab.inputs import numbers
 
 NOTEBOOKS = {"calibration": "10_bench_measure", "model": "12_identification", "camera": "17_camera_calibration"}
@@ -46,7 +51,28 @@ def save_result(kind, value, errors=None, measured_on=None):
     simulated = head.get("simulated") == "true"
     unit, seed = head.get("seed", "") if simulated else "", head.get("noise_seed", "")
     about = {name: head.get(name, "") for name in ("arm", "bench", "bench_id")}
-    print("Kept:", result_files.add(kind, _ENDINGS[kind], write, simulated=simulated, unit=unit, seed=seed, **about))
+    print("Kept:", add(kind, write, simulated=simulated, unit=unit, seed=seed, **about))
+
+
+def add(kind, write, **about):
+    """Keep a result. write: function (path) that writes the numbers; about: the other fields of Result. Returns it.
+
+    Raises InputError if it cannot be written.
+    """
+    number = 1 + max((int(one.name.rpartition("-")[2]) for one in every() if one.kind == kind), default=0)
+    name, now, ending = f"{kind}-{number}", datetime.now().astimezone().isoformat(), _ENDINGS[kind]
+    result = Result(name=name, kind=kind, made=now, chosen=now, withdrawn=False, file=name + ending, **about)
+    try:
+        folder().mkdir(parents=True, exist_ok=True)
+        write(result.path)
+        _describe(result)
+    except OSError as error:
+        raise InputError(f"cannot keep {name} in {folder()}: {error.strerror}; set IR50P_HOME to a folder") from None
+    return result
+
+
+def _describe(result):
+    replace_text(folder() / f"{result.name}.json", json.dumps(result._asdict(), indent=1) + "\n")
 
 
 def load_result(kind, bench, course=None):
@@ -70,8 +96,8 @@ def newest_result(kind, bench):
     """The Result of this kind that counts for a bench; None if there is none."""
     _check(kind)
     if kind == "camera" and bench.simulated:
-        return result_files.newest(kind, _RENDERED["bench_id"], "")
-    return result_files.newest(kind, bench.bench_id, bench.arm.name) if bench.bench_id else None
+        return newest(kind, _RENDERED["bench_id"], "")
+    return newest(kind, bench.bench_id, bench.arm.name) if bench.bench_id else None
 
 
 def results(*, choose=None, withdraw=None):
@@ -82,13 +108,15 @@ def results(*, choose=None, withdraw=None):
     """
     import pandas as pd
 
-    if choose is not None:
-        result_files.change(choose, withdrawn=False)
-    if withdraw is not None:
-        result_files.change(withdraw, withdrawn=True)
-    found = result_files.every()
-    table = pd.DataFrame(found, columns=result_files.Result._fields, dtype=object).set_index("name")
-    counts = [one == result_files.newest(one.kind, one.bench_id, one.arm) for one in found]
+    for name in filter(None, (choose, withdraw)):
+        known = {one.name: one for one in every()}
+        if name not in known:
+            raise InputError(f"there is no result {name!r}: {', '.join(known) or 'none at all'}")
+        chosen = known[name].chosen if name == withdraw else datetime.now().astimezone().isoformat()
+        _describe(known[name]._replace(withdrawn=name == withdraw, chosen=chosen))
+    found = every()
+    table = pd.DataFrame(found, columns=Result._fields, dtype=object).set_index("name")
+    counts = [one == newest(one.kind, one.bench_id, one.arm) for one in found]
     table["state"] = np.where(table.withdrawn, "withdrawn", np.where(counts, "counts", ""))
     table["made"] = table.made.str[:16].str.replace("T", " ")
     table["arm is"] = np.where(table.simulated, "simulated", "real")

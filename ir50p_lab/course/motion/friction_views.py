@@ -1,6 +1,7 @@
-"""Notebook 07: a spring balance, the picture of what it found, and what serves until the student's own lines do."""
+"""Notebook 07: what drags the waist, its picture, a lift, and what serves until the student's own lines do."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -16,7 +17,7 @@ _BRAKE = 1e4  # N m: a friction that nothing overcomes
 
 
 def dragged(arm, speed, *, wires):
-    """Torque that drags the waist at a steady speed, as a spring balance shows it: N m.
+    """Torque that drags the waist at a steady speed: N m.
 
     Simulated: a stiff controller pulls, shoulder and elbow are held; the mean of the third second.
 
@@ -36,6 +37,13 @@ def dragged(arm, speed, *, wires):
     return simulate(replace(arm, friction=held), stiff, way, duration=3, period=0.001).u[2000:, 0].mean()
 
 
+def seconds_to_lift(arm, counts):
+    """Time until the shoulder of the level arm is at 0.5 rad with these counts (3,), s."""
+    push = SimpleNamespace(unit="PWM", step=lambda t, q, reference: counts)
+    lifted = simulate(arm, push, duration=5, stops=True, table=0.0)
+    return lifted.t[np.argmax(lifted.q[:, 1] > 0.5)]
+
+
 def friction_figure(speeds, torques, law=None):
     """Torques that drag a joint over its speed (dots), and a law of friction through them: Figure 1.9. LabFigure.
 
@@ -45,7 +53,7 @@ def friction_figure(speeds, torques, law=None):
     ax.plot(speeds, torques, "o", color=COLOURS["orange"], label="torque that drags the waist")
     for side in (-1, 1) if law else ():
         fine = side * np.linspace(1e-4, 1.05 * np.max(speeds), 300)
-        ax.plot(fine, [law(one) for one in fine], color=COLOURS["blue"], label="your law" if side > 0 else None)
+        ax.plot(fine, [law(one) for one in fine], color=COLOURS["blue"], label="the law" if side > 0 else None)
     ax.axhline(0, color=COLOURS["grey"], linewidth=1)
     ax.set(xlabel="speed of the waist [rad/s]", ylabel="torque [N m]")
     ax.legend(loc="upper left")

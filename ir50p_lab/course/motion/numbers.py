@@ -36,7 +36,7 @@ NUMBERS = (
         np.max(_TIMES),
         unit="s",
         tolerance=0.01,
-        why="One joint decides, here the shoulder; the others have time to spare. 07 will ask for just this.",
+        why="One joint decides, here the shoulder; the others have time to spare. 07 asks in counts.",
         slips={
             "That is for an even speed: half way a quintic is faster.": np.max(_TIMES) * 8 / 15,
             "That is the waist's time; all three have to keep their speed.": _TIMES[0],

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, subplots
-from ir50p_lab.course.draw.traces import STAMP
+from ir50p_lab.course.draw.traces import STAMP, Row, Traces
 
 
 def motion(t, x, last=None):
@@ -37,6 +37,18 @@ def orders(steps, errors):
     ax.set(xlabel="step [ms]", ylabel="error of the tip [mm]", title="Half the step: how much less error?")
     ax.legend()
     return figure
+
+
+def bill_panel():
+    """A panel of what a way asks of three motors: its figure, and update(seconds, shares (n, 3) of each one's most)."""
+    row = Row("share of most [1]", (-1.5, 1.5), JOINT_LABELS, levels=(-1, 1))
+    traces = Traces("time [s]", (0, 4), row)
+
+    def update(seconds, shares):
+        traces.update(np.linspace(0, seconds, len(shares)), *shares.T)
+        traces.title(f"In {seconds:.2f} s: up to {100 * np.max(np.abs(shares)):.0f} % of what a motor can")
+
+    return traces.figure, update
 
 
 def honey(M):

@@ -58,11 +58,6 @@ def Z_2_and_Z_3():
     return Matrix([s1, -c1, 0])
 
 
-def J_omega_1_54():
-    """(1.54), right: angular velocity in base coordinates per joint rate."""
-    return Matrix([[0, s1, s1], [0, -c1, -c1], [1, 0, 0]])
-
-
 def step_1_58(J, dx):
     """(1.58), dq = (J^T J)^-1 J^T dx, with the J (n, 3) and the dx it is given.
 

@@ -26,48 +26,6 @@ def T_1_11(A, i, j):
     return prod(A[i : j - 1], start=eye(4))
 
 
-def trans_z(d):
-    """(1.25), shift by d (m) along z."""
-    return Matrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
-
-
-def Rot_z(theta):
-    """(1.26), turn by theta (rad) about z."""
-    c, s = cos(theta), sin(theta)
-    return Matrix([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-
-
-def trans_x(a):
-    """(1.27), shift by a (m) along x."""
-    return Matrix([[1, 0, 0, a], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-
-
-def Rot_x(alpha):
-    """(1.28), turn by alpha (rad) about x."""
-    c, s = cos(alpha), sin(alpha)
-    return Matrix([[1, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]])
-
-
-def Z(theta, d):
-    """(1.21) = (1.23), the joint's part of a step."""
-    return trans_z(d) * Rot_z(theta)
-
-
-def Z_text(theta, d):
-    """The sentence below (1.21) and the list of symbols. Wrong: turn theta about x instead of z."""
-    return trans_z(d) * Rot_x(theta)
-
-
-def X(a, alpha):
-    """(1.22) = (1.24), the link's part of a step."""
-    return trans_x(a) * Rot_x(alpha)
-
-
-def X_restated(a, alpha):
-    """[X_i] as it is repeated in 1.2.3. Wrong: turns by the length a instead of the angle alpha."""
-    return trans_x(a) * Rot_x(a)
-
-
 def dh(theta, d, a, alpha):
     """(1.29), one Denavit-Hartenberg step written out."""
     ct, st, ca, sa = cos(theta), sin(theta), cos(alpha), sin(alpha)
@@ -77,6 +35,26 @@ def dh(theta, d, a, alpha):
                    [0,  sa,       ca,       d     ],
                    [0,  0,        0,        1     ]])
     # fmt: on
+
+
+def Z(theta, d):
+    """(1.21) = (1.23), the joint's part of a step."""
+    return dh(theta, d, 0, 0)
+
+
+def Z_text(theta, d):
+    """The sentence below (1.21) and the list of symbols. Wrong: turn theta about x instead of z."""
+    return dh(0, d, 0, theta)
+
+
+def X(a, alpha):
+    """(1.22) = (1.24), the link's part of a step."""
+    return dh(0, 0, a, alpha)
+
+
+def X_restated(a, alpha):
+    """[X_i] as it is repeated in 1.2.3. Wrong: turns by the length a instead of the angle alpha."""
+    return dh(0, 0, a, a)
 
 
 # Table 1.1. The rows are right. Wrong: the header theta_{i-1}, d_{i-1}, phi_i, alpha_i for theta_i, d_i, a_i, alpha_i.
@@ -110,8 +88,7 @@ def T_1_30(alpha_2=pi / 2):
 
     alpha_2: rad, pi/2 as meant, or 0 as Table 1.1 has it.
     """
-    shoulder = Rot_z(q1) * trans_z(l1) * Rot_x(alpha_2)
-    return shoulder * Rot_z(q2) * trans_x(l2) * Rot_z(q3) * trans_x(l3) * Rot_x(pi / 2)
+    return dh(q1, l1, 0, alpha_2) * dh(q2, 0, l2, 0) * dh(q3, 0, l3, pi / 2)
 
 
 def T_1_31():

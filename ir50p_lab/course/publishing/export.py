@@ -18,23 +18,7 @@ from ir50p_lab.course.publishing.pictures import live_arm_script, plain_outputs
 from ir50p_lab.errors import InputError, LabError
 
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
-_CSS = """
-body { font: 16px/1.55 system-ui, sans-serif; color: #222; max-width: 1080px; margin: 2em auto; padding: 0 1.5em; }
-h1, h2, h3 { line-height: 1.25; margin-top: 1.6em; }
-pre { font: 13px/1.45 ui-monospace, monospace; white-space: pre-wrap; margin: 0; }
-code { font: 0.88em ui-monospace, monospace; background: #f2f4f7; padding: 1px 4px; border-radius: 3px; }
-.input .highlight { background: #f6f8fa; border-left: 3px solid #0072B2; padding: 8px 12px; margin: 1em 0 0.4em; }
-.output { margin: 0.4em 0 1em; } .output pre { padding: 4px 14px; } .prompt { display: none; }
-img { max-width: 100%; height: auto; }
-.row { display: flex; flex-wrap: wrap; gap: 12px; } .row > * { flex: 1 1 300px; min-width: 0; }
-table { border-collapse: collapse; margin: 1em 0; } td, th { border: 1px solid #d5dbe2; padding: 4px 10px; }
-blockquote { border-left: 3px solid #ccc; margin-left: 0; padding-left: 1em; }
-math[display=block] { margin: 0.8em 0; } .anchor-link { display: none; }
-@media print {
-  body { max-width: none; margin: 0; font-size: 12px; } img, svg, tr { break-inside: avoid; }
-  img, svg[role=img] { max-height: 9cm; width: auto; } h1, h2, h3 { break-after: avoid; }
-}
-"""
+_CSS = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
 
 
 class _Renderer(IPythonRenderer):

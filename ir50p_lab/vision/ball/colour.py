@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from ir50p_lab.errors import ImageError, InputError
-from ir50p_lab.vision.checks import coordinates
+from ir50p_lab.vision.arguments import coordinates
 from ir50p_lab.vision.image import check_image
 
 HALF_CIRCLE = 90  # OpenCV's hue is degrees/2: 0..179

@@ -6,11 +6,11 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import number
+from ir50p_lab.vision.arguments import check_picture_size
 from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.evidence import judge
 from ir50p_lab.vision.ball.guesses import guess_circles
 from ir50p_lab.vision.ball.outline import measure
-from ir50p_lab.vision.checks import check_picture_size
 from ir50p_lab.vision.image import check_image
 from ir50p_lab.vision.pinhole import Pinhole, as_pinhole
 

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-RAYS = 64
-ANGLES = np.arange(RAYS) * (2 * np.pi / RAYS)
-UNIT = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])  # (rays, 2)
+from ir50p_lab.vision.ball.rays import RAYS, UNIT, cast
+
 # Of each pass, in radii: how far inside and outside the circle edges are sought, and how near to it they are preferred.
 _PASSES = ((0.6, 0.3), (0.45, 0.2), (0.3, 0.15))
 _SAMPLES = 41  # samples along a ray
@@ -69,15 +68,6 @@ def measure(image, pinhole, circle):
             return Outline(x, y, r, "its edges lie on no circle")
         x, y, r, centre, off = found
     return Outline(x, y, r, "", centre, off, height, float(within[:, _SAMPLES // 2].mean()), contrast)
-
-
-def cast(image, x, y, rho):
-    """Colours (rays, m, 3) at the distances rho (m,) px from (x, y) px; which lie in the picture (rays, m)."""
-    px, py = x + rho * UNIT[:, :1], y + rho * UNIT[:, 1:]
-    places = np.float32(px), np.float32(py)
-    rgb = cv2.remap(image, *places, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    h, w = image.shape[:2]
-    return rgb, (px >= -0.5) & (px <= w - 0.5) & (py >= -0.5) & (py <= h - 0.5)
 
 
 def _contrast(rho, rgb, within, r):

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError, ImageError, InputError
+from ir50p_lab.vision.arguments import picture_size, point_list
 from ir50p_lab.vision.board_pose import transform
-from ir50p_lab.vision.calibration import checks
+from ir50p_lab.vision.calibration import doubts
 from ir50p_lab.vision.calibration.board import Checkerboard
+from ir50p_lab.vision.calibration.calibration_result import LENS, NAMES, Calibration, View
 from ir50p_lab.vision.calibration.corners import find_checkerboard
 from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, fit_lens, height
 from ir50p_lab.vision.calibration.reject_reasons import NotUsable, Reason, Rejected
-from ir50p_lab.vision.calibration.result import LENS, NAMES, Calibration, View
-from ir50p_lab.vision.checks import picture_size, point_list
 from ir50p_lab.vision.image import list_images, load_image, to_grey
 
 _FEWEST = 3  # views: with fewer there is no calibration
@@ -100,7 +100,7 @@ def _calibrate(found, points, size, lens, rejected, board):
     """Calibration from (name, index, corners) of each view; board: Checkerboard that may be bent, or None."""
     fitted, doubt = fit_lens(points, [xy for *_, xy in found], size, lens)
     for _ in range(0 if doubt else len(found) // 4):
-        odd = checks.odd_view(fitted.view_rms)
+        odd = doubts.odd_view(fitted.view_rms)
         if odd is None:
             break
         (name, index, _), rms = found.pop(odd), fitted.view_rms
@@ -137,7 +137,7 @@ def _calibrate(found, points, size, lens, rejected, board):
         sigma=sigma,
     )
     # of a lens outside the model the other doubts would name causes that are none
-    return replace(result, warnings=(doubt,) if doubt else (*said, *checks.warnings_about(result)))
+    return replace(result, warnings=(doubt,) if doubt else (*said, *doubts.warnings_about(result)))
 
 
 def _coefficients(lens):

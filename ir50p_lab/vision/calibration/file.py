@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
+from ir50p_lab.vision.arguments import check_picture_size, picture_size
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.reject_reasons import Reason, Rejected
-from ir50p_lab.vision.checks import check_picture_size, picture_size
 
 _LONGEST = 2000  # characters: longer texts are split, for OpenCV reads no more than 4096 bytes of one
 

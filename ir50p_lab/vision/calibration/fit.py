@@ -7,12 +7,12 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.board_pose import moved, transform
-from ir50p_lab.vision.calibration.result import LENS, NAMES
+from ir50p_lab.vision.board_pose import transform, transform_points
+from ir50p_lab.vision.calibration.calibration_result import LENS, NAMES
 
 _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 1e-9)
 _BENT = 0.75  # variance of residuals with every corner free over that with a flat board: if less, the board is bent
-_GAUGE = 7  # numbers of a free board that no picture tells: where it lies, how it is turned, how large it is
+_GAUGE = 7  # gauge freedoms of a free board: position 3, rotation 3, scale 1
 _ANOTHER = 0.75  # median residual of a view with another lens over that with the one asked for: if less, it is another
 _WIDE = np.deg2rad(40)  # if no corner lies farther off the axis, a fisheye hardly differs from the lens of the model
 _UNKNOWN = 1e-11  # if an eigenvalue of the scaled normal matrix is smaller, it is rounding: something is undetermined
@@ -115,7 +115,8 @@ def _fit_fisheye(points, pixels, size):
     flags |= cv2.fisheye.CALIB_FIX_SKEW | cv2.fisheye.CALIB_FIX_K3 | cv2.fisheye.CALIB_FIX_K4
     found = cv2.fisheye.calibrate(*views, size, start, np.zeros(4), flags=flags, criteria=_STOP)
     fitted = _camera_fit(found, cv2.fisheye.projectPoints, points, pixels)
-    X, Y, Z = np.concatenate([moved(transform(*pose), p) for p, pose in zip(points, fitted.poses, strict=True)]).T
+    views = zip(points, fitted.poses, strict=True)
+    X, Y, Z = np.concatenate([transform_points(transform(*pose), board) for board, pose in views]).T
     return np.arctan2(np.hypot(X, Y), Z).max(), fitted
 
 

@@ -7,10 +7,10 @@ import numpy as np
 from ir50p_lab.errors import VisionError
 from ir50p_lab.inputs import number, vector3
 from ir50p_lab.modelling.chain import frames
+from ir50p_lab.vision.arguments import rigid
 from ir50p_lab.vision.ball.colour import RED, Colour
 from ir50p_lab.vision.ball.find import find_balls
-from ir50p_lab.vision.board_pose import inverse_transform, moved
-from ir50p_lab.vision.checks import rigid
+from ir50p_lab.vision.board_pose import inverse_transform, transform_points
 
 GREEN = Colour(hue=135.0, tolerance=35.0, name="green")  # of the marker on the hand
 MARKER_AT = (-0.042, 0.0, 0.0)  # m, tool coordinates: between the fingers, before the end of the forearm
@@ -76,15 +76,15 @@ class BallLocator:
             place = self.plane.to_points(xy, self.radius)
         except VisionError as error:
             return Seen(None, balls[0], image, simulated, str(error))
-        return Seen(moved(self.T_base_table, place), balls[0], image, simulated)
+        return Seen(transform_points(self.T_base_table, place), balls[0], image, simulated)
 
     def to_image(self, p):
         """Pixel (2,) of a point p (3,) m of the base frame."""
-        return self.plane.to_image(moved(inverse_transform(self.T_base_table), np.asarray(p, dtype=float)))
+        return self.plane.to_image(transform_points(inverse_transform(self.T_base_table), np.asarray(p, dtype=float)))
 
     def marker_place(self, arm, q):
         """Where the marker is with the arm at q (3,) rad: (3,) m, base frame."""
-        return moved(frames(arm, q)[3], self.marker_at)
+        return transform_points(frames(arm, q)[3], self.marker_at)
 
     def marker_pixel(self, arm, q):
         """Pixel (2,) where the marker should be seen with the arm at q (3,) rad."""

@@ -8,10 +8,10 @@ import numpy as np
 from ir50p_lab.errors import CameraError, UnreachableError, VisionError
 from ir50p_lab.inputs import number, whole
 from ir50p_lab.modelling.chain import forward_kinematics
-from ir50p_lab.vision.checks import coordinates
+from ir50p_lab.vision.arguments import coordinates
 from ir50p_lab.vision.reaching.moving import Mover
 from ir50p_lab.vision.reaching.plan import plan, reach_pose
-from ir50p_lab.vision.reaching.result import BallTracker, FollowLog, Look, Reached
+from ir50p_lab.vision.reaching.reach_result import BallTracker, FollowLog, Look, Reached
 
 HEIGHT = 0.06  # m: height of the tip over the ball's centre, 30 mm over its top
 # Counts: standard deviation of a potentiometer's errors, calibrated and nominal (assumed: a good wire-wound one)

@@ -7,7 +7,7 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
-from ir50p_lab.vision.board_pose import moved
+from ir50p_lab.vision.board_pose import transform_points
 from ir50p_lab.vision.camera import Camera, Frame
 from ir50p_lab.vision.reaching.ball_locator import MARKER_AT
 from ir50p_lab.vision.rendering import SceneBall, arm_sticks, bench_camera, bench_scene, render_scene
@@ -78,7 +78,7 @@ class RenderedBench(Camera):
         """A picture of this moment: Frame."""
         arm, q = self.bench.arm, self.bench.plant.q_true
         balls = [SceneBall(position=tuple(p), radius=_RADIUS) for p in self.balls_true]
-        place = tuple(moved(frames(arm, q)[3], np.array(MARKER_AT)))
+        place = tuple(transform_points(frames(arm, q)[3], np.array(MARKER_AT)))
         marker = SceneBall(position=place, radius=_MARKER, colour=(25, 150, 60), gloss=0.1)
         sticks = arm_sticks(q, arm, opening=0.06 if self._closed else 0.07)
         self.pictures += 1

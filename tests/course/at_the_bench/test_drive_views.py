@@ -132,15 +132,18 @@ def test_a_filtered_controller_hears_late(cutoff_hz, seconds):
 
 
 def broken(fault):
-    bench, pid = views.arm_to_break(fault, record_to=False, realtime=fault == "process"), my_robot.PID(2000, 2000, 80)
+    bench, pid = (
+        views.bench_for_faults(fault, record_to=False, realtime=fault == "process"),
+        my_robot.PID(2000, 2000, 80),
+    )
     q0 = rest_pose(IR50P)
     bench.plant.place(q0)
     with pytest.raises(LabError) as caught, bench:
         for k, sample in enumerate(bench.run(3, lambda t: my_robot.quintic(q0, FIRST, 3, t))):
             if k == 100:
-                views.make(fault, bench)
+                views.cause_fault(fault, bench)
             bench.drive(pid.step(sample.t, sample.q, sample.reference))
-    return caught.value, *views.aftermath(bench)
+    return caught.value, *views.after_fault(bench)
 
 
 @pytest.mark.parametrize(
@@ -162,14 +165,14 @@ def test_a_real_arm_is_broken_only_where_the_lab_allows_it(monkeypatch, capsys):
     real = views.connect("simulated", record_to=False)
     real.caps = real.caps._replace(faults=())
     monkeypatch.setattr(views, "arm_that_answers", lambda **options: real)
-    bench = views.arm_to_break("motor", record_to=False)
+    bench = views.bench_for_faults("motor", record_to=False)
     assert bench is not real and not real.is_open and "Broken on the simulated arm" in capsys.readouterr().out
     real.caps = real.caps._replace(faults=("motor",))
-    assert views.arm_to_break("motor") is real
+    assert views.bench_for_faults("motor") is real
 
 
 def test_the_circle_s_figure_says_where_it_is_from():
-    run = views.simulated(
+    run = views.run_simulated(
         IR50P, my_robot.PID(2000, 2000, 80), lambda t: my_robot.quintic(FIRST, FIRST, 1, t), 0.5, q0=FIRST
     )
     tips = np.array([my_robot.forward_kinematics(q, L) for q in run.recording.q])

@@ -89,9 +89,9 @@ def test_a_filter_of_any_library_is_taken():
 def test_lines_of_a_hand_are_those_of_the_course():
     """The judge of the package finds the same slopes, zeros and errors."""
     low, high = np.array([IR50P.q_min, IR50P.q_max])
-    angles, counts = views.by_hand(IR50P, np.linspace(0.95 * low, 0.95 * high, 12))
+    angles, counts = views.moved_by_hand(IR50P, np.linspace(0.95 * low, 0.95 * high, 12))
     np.testing.assert_allclose(2 * np.degrees(angles), np.rint(2 * np.degrees(angles)), atol=1e-9)
-    assert not np.array_equal(counts, views.by_hand(IR50P, np.linspace(0.95 * low, 0.95 * high, 12))[1])  # again
+    assert not np.array_equal(counts, views.moved_by_hand(IR50P, np.linspace(0.95 * low, 0.95 * high, 12))[1])  # again
     judged = fit_calibration(angles, counts)
     for joint in range(3):
         slope, offset, covariance = my_robot.fit_line(counts[:, joint], angles[:, joint])
@@ -100,9 +100,9 @@ def test_lines_of_a_hand_are_those_of_the_course():
 
 
 def test_pictures_name_their_axes_and_a_hand_reads_counts(capsys, monkeypatch):
-    angles, counts = views.by_hand(IR50P, np.linspace([-1, 0, -1], [1, 1, 0], 8))
+    angles, counts = views.moved_by_hand(IR50P, np.linspace([-1, 0, -1], [1, 1, 0], 8))
     fit = my_robot.fit_line(counts[:, 1], angles[:, 1])
-    for figure in (views.pencils(counts[:, 1], fit, 500.0), views.leftovers(angles, 1000 * angles)):
+    for figure in (views.error_bands(counts[:, 1], fit, 500.0), views.residuals(angles, 1000 * angles)):
         assert all(ax.get_xlabel() for ax in figure.axes) and "[mrad]" in figure.axes[0].get_ylabel()
     monkeypatch.setenv("IR50P_BENCH", "simulated")
     read = views.counts_by_hand()

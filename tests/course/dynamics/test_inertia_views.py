@@ -1,4 +1,4 @@
-"""Pictures of notebook 04, what stands in for `heaviness`, and the push of 1 N m."""
+"""Pictures of notebook 04, and what stands in for `heaviness`."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.course.dynamics import inertia_views as views
-from ir50p_lab.modelling import IR50P, THESIS_RODS, forward_dynamics, jacobian, mass_matrix
+from ir50p_lab.modelling import IR50P, forward_dynamics, jacobian, mass_matrix
 
 SPACE = replace(IR50P.without_friction(), g=0.0)
 
@@ -52,10 +52,3 @@ def test_kilograms_are_newtons_by_the_acceleration_that_way(q):
 
 def test_where_nothing_starts_the_tip_is_infinitely_heavy():
     assert views.heaviness(IR50P, np.zeros(3), np.array([1.0, 0, 0])) == np.inf
-
-
-def test_a_push_starts_as_the_mass_matrix_says():
-    for arm in (IR50P, THESIS_RODS):
-        run = views.pushed(arm, [0, 1.0, 0], 0.01)
-        starts = np.linalg.solve(mass_matrix(arm, np.zeros(3))[1:, 1:], [1.0, 0])
-        assert np.allclose(run.qd[-1, 1:] / 0.01, starts, rtol=1e-2)

@@ -48,7 +48,7 @@ def test_a_guess_is_replaced_once_and_not_after_it_is_measured(capsys):
         ((0, 35), "write 0.35"),
         ((0, 35, "m"), "write 0.35"),
         (("0,35", "m"), "write 0.35"),
-        (("a lot", "m"), "'a lot' is no answer, so it does not count: give one number, in m"),
+        (("a lot", "m"), "'a lot' is no answer, so it does not count: give one number (m)"),
         ((float("nan"), "m"), "nan is no answer"),
     ],
 )

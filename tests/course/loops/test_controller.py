@@ -222,7 +222,7 @@ def test_wrong_ones_are_told_apart(stage, old, new, words):
 @pytest.mark.parametrize("stage", ALL)
 def test_every_mistake_in_a_table_gets_its_own_sentence(stage):
     earlier = {"the integral has the gain kp: it has its own, ki"}  # told by what it adds to P where ki is 0
-    for wrong, says in trials._made(stage, stage):
+    for wrong, says in trials._made(stage, "mistakes"):
         verdict = grade(task(stage), wrong)
         assert verdict.state == "wrong" and (says in verdict.says or says in earlier), verdict.says
 

@@ -9,7 +9,7 @@ from ir50p_lab.course.reaching import views
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import Seen, TablePlane
 from ir50p_lab.vision.board_pose import inverse_transform
-from ir50p_lab.vision.reaching.result import FollowLog
+from ir50p_lab.vision.reaching.reach_result import FollowLog
 from ir50p_lab.vision.rendering import bench_camera
 
 CAMERA, T_CAM_BASE = bench_camera()

@@ -35,7 +35,7 @@ def _points():
     return [*cases, (whole, 2 * whole - 3)]  # exactly on a line
 
 
-_SAYS = sentences(fit_line)
+_SAYS = sentences("fit_line", __file__)
 
 
 def _symptom(case, returned, expected):

@@ -33,7 +33,7 @@ def _signals():
     ]
 
 
-_SAYS = sentences(low_pass)
+_SAYS = sentences("low_pass", __file__)
 
 
 def _symptom(case, returned, expected):

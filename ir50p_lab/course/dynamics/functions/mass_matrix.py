@@ -44,7 +44,7 @@ def _cases():
     return [*cases, (q, l, np.zeros(3), lc, np.zeros((3, 3, 3)), rotor)]
 
 
-_SAYS = sentences(mass_matrix)
+_SAYS = sentences("mass_matrix", __file__)
 
 
 def _symptom(case, returned, expected):

@@ -45,7 +45,7 @@ def _symptom(case, returned, expected):
     off = np.max(np.abs(returned - expected))
     given, gained = np.sum(case[1] * returned), case[1] @ expected
     key = "near" if off < 0.05 else "energy" if abs(given - gained) > 1e-3 else "torques"
-    return sentences(velocity_torque)[key].format(off=off, given=given, gained=gained)
+    return sentences("velocity_torque", __file__)[key].format(off=off, given=given, gained=gained)
 
 
 _PARTS = ("torque 1", "torque 2", "torque 3")

@@ -34,7 +34,7 @@ def _steps():
     return cases
 
 
-_SAYS = sentences(damped_step)
+_SAYS = sentences("damped_step", __file__)
 
 
 def _symptom(case, returned, expected):

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, sentences, table, task_of, wrong_one
+from ir50p_lab.course.checking.task import Mistake, changes_of, sections, sentences, task_of, wrong_one
 from ir50p_lab.course.kinematics.functions import LENGTHS
 from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
 
@@ -73,7 +73,7 @@ def _straight(poses):
     return np.abs(np.sin(poses[:, 2])).max() < 1e-2
 
 
-_SAYS = sentences(inverse_kinematics)
+_SAYS = sentences("inverse_kinematics", __file__)
 
 
 def _symptom(case, returned, expected):
@@ -104,18 +104,27 @@ def _whole_turns(poses):
 
 
 _JOINTS = ("waist", "shoulder", "elbow")
-_WHERE = [("", ("True",)), *table("inverse_kinematics.where", __file__)]  # some of the poses: in words, and their test
+_WHERE = {  # some of the poses: in words, and their test
+    "": "True",
+    " in the poses with their back to the place": "side < 0",
+    " where x < 0": "x < 0",
+    " where y < 0": "y < 0",
+    " wherever it is beyond a quarter turn": "abs(waist) > np.pi / 2",
+    " with the elbow up": "elbow < 0",
+    " with the elbow down": "elbow > 0",
+}
 
 
 def _mistakes():
     """The mistakes of the table; where a sentence leaves room for it, made in some of the poses only, too."""
-    for says, changes in table("inverse_kinematics", __file__):
-        for words, (where,) in _WHERE if "{}" in says else ():
-            pose, bent = changes[0].split("  ->  ")
-            some = f"{pose} -> {bent} if {where} else {pose}"
-            yield Mistake(wrong_one(inverse_kinematics, [some]), says.format(words and f" {words}"))
+    for says, changes in changes_of(sections("inverse_kinematics", __file__)["mistakes"]):
         if "{}" not in says:
             yield Mistake(wrong_one(inverse_kinematics, changes), says)
+            continue
+        pose, bent = changes[0].split("  ->  ")
+        for words, where in _WHERE.items():
+            some = f"{pose} -> {bent} if {where} else {pose}"
+            yield Mistake(wrong_one(inverse_kinematics, [some]), says.format(words))
 
 
 TASK = task_of(

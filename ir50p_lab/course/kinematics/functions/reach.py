@@ -86,7 +86,7 @@ def _same_pose(returned, expected):
     return returned.shape == (3,) and bool(np.abs(returned - expected).max() < SAME)
 
 
-_SAYS = sentences(reach)
+_SAYS = sentences("reach", __file__)
 
 
 def _symptom(case, returned, expected):

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from ir50p_lab import controllers
-from ir50p_lab.course.checking.task import Task, changed, solutions, table
+from ir50p_lab.course.checking.task import Task, changed, words
 from ir50p_lab.course.loops.functions.PID_trials import LOANS, tried
 
 
@@ -16,13 +16,11 @@ class PID(controllers.PID):
         super().__init__(kp, ki=ki, kd=kd, limit_pwm=limit_pwm, period=period, filter_hz=filter_hz, **options)
 
 
-_TEST = solutions("PID.test", __file__)[0] + "\n"
-
-
-def _task(stage, asks, *hints):
+def _task(stage):
     right = PID if stage == "PID" else changed(LOANS[stage], (), {"np": np})["PID"]
-    return Task(stage, asks, right, LOANS[stage], tried=partial(tried, stage), test=_TEST, hints=hints)
+    options = words(stage, __file__) | {"test": words("PID", __file__)["test"]}
+    return Task(name=stage, right=right, loan=LOANS[stage], tried=partial(tried, stage), **options)
 
 
-STAGES = {stage: _task(stage, *words) for stage, words in table("PID.stages", __file__)}  # what it returns, two hints
+STAGES = {stage: _task(stage) for stage in LOANS}
 TASK = STAGES["PID"]

@@ -1,22 +1,20 @@
 """What a student's PID is put through: runs that show one part of it each, and what a wrong one is told.
 
-Where one right answer, or one of several (`PID.STAGE.right.txt`), can be told from its commands alone, a table of
-mistakes says what else they are (`PID.STAGE.txt`): each row is the loan with a change in its text. What the other
-trials say stands in `PID.says.txt`, each sentence with its key.
+Where a right answer can be told from its commands alone, a table says what else they are: of a mistake, or of another
+right answer ("also right" in PID.STAGE.txt). What the other trials say stands in PID.txt, each sentence with its key.
 """
 
 import inspect
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from ir50p_lab.course.checking.calling import guarded
 from ir50p_lab.course.checking.shape_checks import no_numbers
-from ir50p_lab.course.checking.task import Failed, changed, shown, solutions, table
+from ir50p_lab.course.checking.task import Failed, changed, changes_of, sections, sentences, shown
 
-LOANS = dict(zip(("PID.p", "PID.pi", "PID.limits", "PID"), solutions("PID.loans", __file__), strict=True))
-_SAYS = {key: says for says, (key,) in table("PID.says", __file__)}
+LOANS = {stage: sections(stage, __file__)["solution"] for stage in ("PID.p", "PID.pi", "PID.limits", "PID")}
+_SAYS = sentences("PID", __file__)
 _KP, _KI, _KD = np.array([40.0, 60.0, 80.0]), np.array([20.0, 30.0, 40.0]), np.array([10.0, 20.0, 30.0])
 _PERIOD = 0.02  # s; not the 0.01 that a student may write down
 _SPEED, _ACCELERATION = 0.3, 7.0  # rad/s, rad/s^2 in the reference
@@ -90,19 +88,18 @@ def _constant(seconds, value):
 
 
 @cache
-def _made(stage, name=""):
-    """Pairs (class, sentence): what a table makes of the solution of a stage; without a table the solution itself."""
-    there = Path(__file__).with_name(f"{name}.txt").exists()
-    rows = table(name, __file__) if there else [("", ())] if not name else []
+def _made(stage, heading):
+    """Pairs (class, sentence): what the table under a heading of PID.STAGE.txt makes of the solution of that stage."""
+    rows = changes_of(sections(stage, __file__).get(heading, ""))
     return [(changed(LOANS[stage], changes, {"np": np})["PID"], says) for says, changes in rows]
 
 
-def compared(stage, commands, otherwise, name=""):
-    """A probe: the commands have to be those of a right one; name: the table of mistakes, else that of the stage."""
+def compared(stage, commands, otherwise, heading="mistakes"):
+    """A probe: the commands have to be those of a right one; heading: of the table of mistakes."""
 
     def probe(cls):
         u = commands(cls)
-        rights = [*_made(stage), *_made(stage, f"{stage}.right")]
+        rights = [(changed(LOANS[stage], (), {"np": np})["PID"], ""), *_made(stage, "also right")]
         for right, remark in rights:
             if np.allclose(u, commands(right), atol=1e-6, rtol=1e-9):
                 return remark
@@ -110,7 +107,7 @@ def compared(stage, commands, otherwise, name=""):
         good = np.isclose(u, expected, atol=1e-6, rtol=1e-9)
         k = np.flatnonzero(~good.all(axis=1))[0]
         example = f"sample {k} of a run, counts\nexpected: {shown(expected[k])}\nyours: {shown(u[k])}"
-        for wrong, says in _made(stage, name or stage):
+        for wrong, says in _made(stage, heading):
             if np.allclose(u, commands(wrong), atol=1e-6, rtol=1e-6):
                 raise Failed(says, example)
         joints = " and ".join(str(joint + 1) for joint in np.flatnonzero(good.all(axis=0)))
@@ -205,7 +202,7 @@ def _windup(cls):
     _at_least([ten[250:-500].min(), twenty[250:-500].min()], 250, "falls back")
     soon, late = ((run[-500:] > 0).sum(axis=0) for run in (ten, twenty))  # samples of pushing on against the error
     if (late > soon + 5).any():
-        compared("PID.limits", _rest, "winds up", "PID.rest")(cls)
+        compared("PID.limits", _rest, "winds up", "mistakes in a long run")(cls)
         raise _failed("winds up")
     _at_least(memory[150], 200, "jumps")
     _at_most(memory[-1], -200, "never lets go")

@@ -24,7 +24,7 @@ def _speeds():
     return cases
 
 
-_SAYS = sentences(friction_torque)
+_SAYS = sentences("friction_torque", __file__)
 
 
 def _symptom(case, returned, expected):

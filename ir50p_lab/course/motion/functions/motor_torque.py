@@ -22,7 +22,7 @@ def _drives():
     return [(u, qd, *both.T) for u, qd, both in zip(counts, speeds, numbers, strict=True)]
 
 
-_SAYS = sentences(motor_torque)
+_SAYS = sentences("motor_torque", __file__)
 
 
 def _symptom(case, returned, expected):

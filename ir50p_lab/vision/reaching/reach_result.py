@@ -1,26 +1,19 @@
 """What a reach leaves behind: its looks, how it ended, where a followed ball was."""
 
-from dataclasses import dataclass
+from collections import namedtuple
 
 import numpy as np
 
 
-@dataclass(frozen=True, eq=False)
-class Look:
+class Look(namedtuple("Look", "marker joint_errors note t")):
     """One stop of a reach; at all but the last the camera has looked again.
 
     marker: (2,) px on the hand, None if it was not seen; joint_errors: (3,) rad, what the potentiometers are off by;
     note: what did not go as planned; t: s, when the arm stood there, by the clock of the run.
     """
 
-    marker: np.ndarray | None
-    joint_errors: np.ndarray
-    note: str
-    t: float
 
-
-@dataclass(frozen=True, eq=False)
-class Reached:
+class Reached(namedtuple("Reached", "ball goal tip q looks tip_true")):
     """How a reach ended.
 
     ========== ==================================================================================== ============
@@ -33,31 +26,17 @@ class Reached:
     ========== ==================================================================================== ============
     """
 
-    ball: np.ndarray
-    goal: np.ndarray
-    tip: np.ndarray
-    q: np.ndarray
-    looks: tuple
-    tip_true: np.ndarray | None
-
     @property
     def miss(self):
         """Distance between goal and tip as measured, m."""
         return float(np.linalg.norm(self.goal - self.tip))
 
 
-@dataclass(frozen=True, eq=False)
-class FollowLog:
+class FollowLog(namedtuple("FollowLog", "t tip ball velocity lead")):
     """t (n,) s; tip (n, 3) m by potentiometers; ball (n, 2) m and velocity (n, 2) m/s as tracked; lead: s, aimed ahead.
 
     ball is NaN before the first look, and while the ball has not been seen for 0.5 s.
     """
-
-    t: np.ndarray
-    tip: np.ndarray
-    ball: np.ndarray
-    velocity: np.ndarray
-    lead: float
 
     @property
     def speed(self):
@@ -91,5 +70,5 @@ class BallTracker:
         self._t = t
 
     def at(self, t):
-        """Where it will be at time t, (2,) m; NaN before the first look."""
+        """Predict the place at time t, (2,) m; NaN before the first look."""
         return np.full(2, np.nan) if self.position is None else self.position + self.velocity * (t - self._t)
