@@ -48,7 +48,7 @@ def _counted(cells):
     functions = [name for name in re.findall(r'^check\("([\w.]+)"', code, re.M) if is_function(name)]
     lines = sum(bool(line.strip()) for line in code.splitlines())
     predictions, panels = len(re.findall(r"^predict\(", code, re.M)), len(PANEL.findall(code))
-    sizes = {name: _size(task(name).loan) for name in functions}
+    sizes = {name: _size(task(name).loan) - _size(task(name).given) for name in functions}
     before = {name: sizes[one] for one, name in pairwise(functions) if function_of(one) == function_of(name)}
     written = sum(_writing(size - before.get(name, 0)) for name, size in sizes.items())
     return 5 * round((len(text.split()) / 150 + 3 * predictions + 2 * panels + written + lines / 2) / 5)

@@ -26,11 +26,12 @@ class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never s
     """The cell cannot stand alone; the message says why and what to do."""
 
 
-def take(thing, name, earlier):
+def take(thing, name, earlier, given=""):
     """Return the Source of a function or class as its cell has it.
 
     name: what it has to be called; earlier: names of the functions of `my_robot` it may lean on. Lines of the cell that
-    it does not need stay behind. Raises CannotTake, saying why: another name, a variable or an import from elsewhere.
+    it does not need stay behind; given: text of helpers that it may use. Raises CannotTake, saying why: another name, a
+    variable or an import from elsewhere.
     """
     thing = inspect.unwrap(thing)
     called = getattr(thing, "__name__", "?")
@@ -38,7 +39,7 @@ def take(thing, name, earlier):
         raise CannotTake(f"this `{called}` is the course's own: write yours, with `def {name}(...)`")
     if called not in (name, "<lambda>"):
         raise CannotTake(f"the function has to be called `{name}`, yours is called `{called}`")
-    text = re.sub(rf"\bmy_robot\.(?!{name}\b)(\w+)", r"\1", _cell_text(thing))
+    text = given + re.sub(rf"\bmy_robot\.(?!{name}\b)(\w+)", r"\1", _cell_text(thing))
     tree = ast.parse(text)
     offered = _definitions(tree)
     if name not in offered:

@@ -34,7 +34,7 @@ def check(name, answer=...):
     if answer is ...:
         return _show("open", name, f"not written yet: {wanted.asks}")
     try:
-        source = take(answer, wanted.function, wanted.leans_on)
+        source = take(answer, wanted.function, wanted.leans_on, wanted.given)
     except CannotTake as reason:
         return _show("wrong", name, f"not yet: {ended(str(reason))}")
     if dots := has_dots(source.text):

@@ -145,6 +145,7 @@ class Task:
     tried: Callable | None = None
     test: str = ""
     signature: tuple = ()
+    given: str = ""  # text of helpers that the notebook shows: a student need not write them
     function: str = ""  # its name; that of a stage is longer
     result: int | None = None  # which of several results it is about, in a trial of one alone
 

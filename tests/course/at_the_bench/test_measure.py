@@ -31,6 +31,7 @@ def test_lines_of_a_hand_are_those_of_the_course():
     low, high = np.array([IR50P.q_min, IR50P.q_max])
     angles, counts = views.moved_by_hand(IR50P, np.linspace(0.95 * low, 0.95 * high, 12))
     np.testing.assert_allclose(2 * np.degrees(angles), np.rint(2 * np.degrees(angles)), atol=1e-9)
+    assert not np.array_equal(counts, views.moved_by_hand(IR50P, np.linspace(0.95 * low, 0.95 * high, 12))[1])  # again
     judged = fit_calibration(angles, counts)
     for joint in range(3):
         slope, offset, covariance = my_robot.fit_line(counts[:, joint], angles[:, joint])
