@@ -5,9 +5,9 @@ import pytest
 from cells import cell
 
 from ir50p_lab.course import badge_of, check, claim, measured, solution
-from ir50p_lab.course.lab_book import predictions
 from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.kinematics.functions.jacobian import jacobian
+from ir50p_lab.course.lab_book import predictions
 from ir50p_lab.course.robot.catalogue import _HERE, of_notebook
 from ir50p_lab.modelling import IR50P, forward_dynamics, mass_matrix
 
