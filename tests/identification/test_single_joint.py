@@ -637,3 +637,54 @@ def test_anyway_goes_on_with_the_reason():
     t, q, u = recorded(ARM)
     found = fit_joint(t, q, np.clip(u, -2.0, 2.0), anyway=True)
     assert "gone on anyway: u was clipped" in " ".join(found.warnings) and found.viscous > 0
+
+
+# -- readings that are held, that fail, that lack their sign, that were cut off under noise ----------------------------
+
+
+@machines
+@pytest.mark.parametrize("share", [0.25, 0.4, 0.6])
+def test_held_at_any_rhythm(machine, share):
+    """A logger that polls faster than the sensor answers: repeated rows bring nothing new."""
+    t, q, u = recorded(machine, 3)
+    new = np.random.default_rng(5).random(len(t)) < share
+    new[0] = True
+    last = np.maximum.accumulate(np.where(new, np.arange(len(t)), 0))
+    check(fit_joint(t, q[last], u[last]), machine, 0.1)
+
+
+@machines
+@pytest.mark.parametrize("value, length", [(0.0, 3), (-9.0, 1), (4.5, 6)])
+def test_failed_readings_are_named_and_left_out(machine, value, length):
+    t, q, u = recorded(machine, 4)
+    level = value - q.min() + 1.5 * np.ptp(q)
+    for k in np.random.default_rng(6).choice(np.arange(50, len(t) - 50), 6, replace=False):
+        q[k : k + length] = level
+    found = fit_joint(t, q, u)
+    check(found, machine, 0.1)
+    assert any("failed readings" in text or "outlier" in text for text in found.warnings)
+
+
+@machines
+def test_a_size_without_its_sign_is_told_how_to_get_it_back(machine):
+    t, q, u = recorded(machine, 5)
+    refused("u has one sign only", t, q, np.abs(u))
+    way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(angle((*machine[:4], 0.0), u))))])
+    refused("the joint moves one way only", t, way, u)
+
+
+@machines
+@pytest.mark.parametrize("share", [0.6, 0.75])
+@pytest.mark.parametrize("noise", [0.005, 0.02])
+def test_a_command_cut_off_under_noise(machine, share, noise):
+    t, q, u = recorded(machine, 6)
+    top = np.abs(u).max()
+    scatter = np.random.default_rng(7).normal(0, noise * top, len(u))
+    clipped = fit_joint(t, q, np.clip(u, -share * top, share * top) + scatter, anyway=True)
+    assert "clipped" in " ".join(clipped.warnings)
+    assert "clipped" not in " ".join(fit_joint(t, q, u + scatter).warnings)
+
+
+def test_no_unwrapping_of_what_lies_on_no_grid():
+    t, q, u = recorded(INDUSTRIAL, 8, change=lambda u: 60 * np.sign(np.sin(9 * np.arange(len(u)) * 0.001)) + 0.01 * u)
+    assert "unwrap" not in " ".join(fit_joint(t, q, u, anyway=True).warnings)
