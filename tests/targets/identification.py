@@ -98,7 +98,7 @@ def honesty(seeds, arm):
         found = identify(known)
         fitted = np.isfinite(found.stderr) & (found.stderr > 0)
         z.append(((found.theta - IR50P.theta_pwm) / found.stderr)[fitted])
-    return np.mean(np.abs(z) < 3)
+    return np.mean(np.abs(np.concatenate(z)) < 3)
 
 
 def rows(seeds=20, *, first=100, quick=False):
