@@ -1,6 +1,7 @@
 """The test command: ``python3 -m ir50p_lab test``, further arguments go to pytest.
 
 --quick        without notebooks, the emulated board, and what takes long or measures time
+--both-ways    each notebook with its dots and with what a student writes; else once, with what a student writes
 --everywhere   notebooks and the tests marked `numeric`, as on other processors and other arms: tests/everywhere.py
 """
 
@@ -11,6 +12,7 @@ from tests import everywhere
 
 PYTEST = [sys.executable, "-m", "pytest"]
 NOTHING_FOUND = 5  # pytest's exit code
+MINUTES = 15  # of one processor, all tests; 18 where compiler and browser are there
 
 
 def main(arguments):
@@ -22,6 +24,8 @@ def main(arguments):
     if any(argument.startswith("--cov") for argument in arguments):
         alone.append("--cov-append")
     commands = (together,) if "--quick" in arguments else (together, alone)
+    if not arguments:
+        print(f"This takes some {MINUTES} minutes of one processor; each notebook is named when it is done.", flush=True)
     codes = [subprocess.run(command).returncode for command in commands]
     found = [code for code in codes if code != NOTHING_FOUND]
     return max(found, default=NOTHING_FOUND)

@@ -7,7 +7,6 @@ TESTS = Path(__file__).parents[1]
 MARKS = {
     "timing": (
         "benchmarks/test_bench_speed.py",
-        "benchmarks/test_serial_speed.py",
         "bench/test_background.py",
         "bench/test_background_board.py",
         "bench/test_real_time.py",
@@ -21,7 +20,6 @@ MARKS = {
         "bench/test_firmware_noise.py",
         "bench/test_real_time.py",
         "bench/test_stopped_process.py",
-        "benchmarks/test_serial_speed.py",
     ),
     "slow": (
         "benchmarks",

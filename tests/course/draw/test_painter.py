@@ -172,14 +172,3 @@ def test_png_holds_the_pixels(shape):
     image.load()
     assert image.format == "PNG"
     np.testing.assert_array_equal(np.asarray(image), rgb)
-
-
-def test_perspective_lines_keep_their_clipping():
-    figure = new_figure(4, 3, projection="3d")
-    ax = figure.axes[0]
-    ax.set_proj_type("persp", focal_length=0.5)
-    ax.plot([-3, 0, 1, 9], [0, 0.5, 1, -7], [0, np.nan, 1, 8], "o-")
-    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
-    painter = Painter(figure)
-    ax.lines[0].set_data_3d([-3, 0, 0.5, 9], [0, 0.5, 1, -7], [0, 0.2, 0.4, 8])
-    assert_same_pixels(painter)
