@@ -30,8 +30,8 @@ class SimulatedIdentification:
     """What `simulate_identification` found, per joint (3,).
 
     fit: best fit in % of the commands that a model without sticking can reach on such a run; spread: standard deviation
-    of u; q: (n, 3) rad, as it was followed; room: (3,) rad to the nearer joint limit; height: m of elbow or tip, whichever
-    is lower, over the table.
+    of u; q: (n, 3) rad, as it was followed; room: (3,) rad to the nearer joint limit; height: m of the
+    lower of elbow and tip over the table.
     """
 
     fit: np.ndarray

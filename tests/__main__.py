@@ -25,7 +25,9 @@ def main(arguments):
         alone.append("--cov-append")
     commands = (together,) if "--quick" in arguments else (together, alone)
     if not arguments:
-        print(f"This takes some {MINUTES} minutes of one processor; each notebook is named when it is done.", flush=True)
+        print(
+            f"This takes some {MINUTES} minutes of one processor; each notebook is named when it is done.", flush=True
+        )
     codes = [subprocess.run(command).returncode for command in commands]
     found = [code for code in codes if code != NOTHING_FOUND]
     return max(found, default=NOTHING_FOUND)

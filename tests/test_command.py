@@ -31,11 +31,6 @@ def test_what_measures_time_runs_alone_after_the_rest(started):
     assert everywhere.PARALLEL[0] == "-n" and int(everywhere.PARALLEL[1]) > 1
 
 
-def test_covered_lines_of_both_runs_count(started):
-    command.main(["--cov=ir50p_lab"])
-    assert [run[-1] for run in started.commands] == ["--cov=ir50p_lab", "--cov-append"]
-
-
 @pytest.mark.parametrize(("codes", "code"), [((0, 5), 0), ((5, 1), 1), ((1, 0), 1), ((5, 5), 5)])
 def test_exit_code(started, codes, code):
     started.codes = codes
