@@ -12,6 +12,7 @@ MARKS = {
         "bench/test_real_time.py",
         "bench/test_stopped_process.py",
         "course/at_the_bench/test_bench_panel.py",
+        "vision/test_vision_times.py",
     ),
     "emulator": (
         "bench/test_background_board.py",
