@@ -55,6 +55,13 @@ def test_compiled_and_python_loop_agree_to_the_last_bit(arm, delay):
     np.testing.assert_array_equal(*(in_python(bench, pid(), TARGET, 0.5).q for bench in benches))
 
 
+def test_a_recording_keeps_its_truth_when_the_arm_drives_to_rest(tmp_path):
+    with SimulatedBench(IR50P, record_to=tmp_path) as bench:
+        recording = bench.follow(pid(), TARGET, 0.5)
+    assert len(recording.truth.q) == len(recording) and np.abs(recording.truth.q - recording.q).max() < 0.1
+    assert len(bench.truth.q) > len(recording)
+
+
 def test_simulated_stands_everywhere(bench):
     recording = bench.follow(pid(), TARGET, 0.1)
     assert bench.simulated and "simulated" in bench.name
