@@ -179,7 +179,7 @@ class LiveRun:
 
     @property
     def alive(self):
-        """Whether the loop still runs."""
+        """True while the loop runs."""
         return self._thread.is_alive()
 
     @property
@@ -283,7 +283,7 @@ class LiveRun:
             self._bench._open()
 
     def is_here(self):
-        """Whether the caller is the loop itself."""
+        """Return True if called from the loop's own thread."""
         return threading.current_thread() is self._thread
 
     def _wait(self, timeout):

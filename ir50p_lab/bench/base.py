@@ -106,7 +106,7 @@ class Bench:
         return {}
 
     def _make_pace(self):
-        """What says when the cycles of a run are due: CountedPace, or Pace on a bench that follows the clock."""
+        """Return the timer of a run: CountedPace, or Pace on a bench that follows the clock."""
         return CountedPace()
 
     def timing(self, run):
@@ -116,7 +116,7 @@ class Bench:
         return {"late_cycles": run.pace.missed, "watchdog_trips": run.trips}
 
     def _make_guard(self):
-        """What looks at every exchange of the run that begins, or None.
+        """Return the guard that checks every sample of the run that begins, or None.
 
         Its check(sample, pwm) gets each Sample before the program does, and the command (3,) PWM counts that the motors
         had since the sample before. What it raises cuts the drive and ends the run. An arm without actuators has none:
@@ -240,7 +240,7 @@ class Bench:
                 self._end_run()
 
     def head(self):
-        """What the head of a recording says of this bench: dict of str."""
+        """Return what the head of a recording says about this bench: dict of str."""
         return {
             "arm": self.arm.name,
             "kind": self.kind,

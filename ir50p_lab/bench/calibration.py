@@ -113,7 +113,7 @@ class JointCalibration:
 
 
 def _pairs(q, counts):
-    """What was measured at one joint, from its table in a file."""
+    """Return the pairs (angles, counts) of one joint from its table in a file."""
     if np.shape(q) != np.shape(counts):
         raise InputError(f"{len(q)} angles q but {len(counts)} counts of a joint: they belong together in pairs")
     return tuple(q), tuple(counts)
@@ -130,6 +130,11 @@ def nominal_calibration(arm):
     Slopes of the sister arm, smaller where the travel of a joint would not fit into 21..1003 counts; the middle of the
     travel reads 512. A joint without limits is taken to turn from -pi to pi.
     Args: arm: Arm. Returns: JointCalibration, without standard errors.
+
+    >>> from ir50p_lab.bench import nominal_calibration
+    >>> from ir50p_lab.modelling import IR50P
+    >>> nominal_calibration(IR50P).counts([0, 0, 0]).round(1)
+    array([512. , 448.1, 696. ])
     """
     lengths(arm)  # refuses what is no Arm
     low, high = np.clip((arm.q_min, arm.q_max), -np.pi, np.pi)

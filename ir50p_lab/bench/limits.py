@@ -16,7 +16,7 @@ NOISE = 0.05  # rad: an arm at an end of its travel may be measured so far beyon
 
 
 def checked_reference(arm, t, value, q=None):
-    """What a reference asks for at t, as rows q, qd, qdd (3, 3); InputError if the arm must not be driven there.
+    """Return the value of a reference at t as rows q, qd, qdd (3, 3). Raise InputError if the arm must not go there.
 
     Its angles must be finite, within the joint limits (or where the arm stands, if that is beyond) and not farther
     than 2 rad from the measured q (3,) rad; None: not measured yet.
@@ -57,6 +57,6 @@ def checked_pose(name, arm, q, table=0.0):
 
 
 def checked_push(link, point, force):
-    """What `SimulatedArm.push` takes: link 1, 2 or 3, point (3,) m, force (3,) N, cut to MOST_PUSH. Else InputError."""
+    """Return link 1 to 3, point (3,) m and force (3,) N, at most MOST_PUSH. Raise InputError for anything else."""
     point, force = vector3("point", point, unit="m"), vector3("force", force, unit="N")
     return whole("link", link, 1, 3), point, force * min(1.0, MOST_PUSH / max(np.linalg.norm(force), MOST_PUSH))

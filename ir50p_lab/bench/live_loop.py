@@ -52,7 +52,7 @@ def live_loop(bench, controller, reference, orders, tell):
 
 
 class _Loop:
-    """What the parts of a run in the background have in common."""
+    """One run in the background: its bench, target, queue of orders and phase."""
 
     def __init__(self, bench, target, orders, tell):
         self.bench, self.target, self.orders, self.tell = bench, target, orders, tell

@@ -37,7 +37,7 @@ def read_on(pipe, take):
 
 
 def main():
-    """What the child does, from its first to its last moment."""
+    """Run in the child process: read the work from the pipe, run the loop, report how it ended."""
     orders, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a controller prints must not get among the answers
     signal.signal(signal.SIGINT, signal.SIG_IGN)

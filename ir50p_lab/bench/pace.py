@@ -45,11 +45,11 @@ class CountedPace:
         return self.cycle
 
     def begins_anew(self):
-        """Never."""
+        """Return False: counted time has no late beginning."""
         return False
 
     def silence(self):
-        """None, s."""
+        """Return 0 s: counted time knows no pause."""
         self.heard = time.perf_counter()
         return 0.0
 
@@ -91,7 +91,7 @@ class Pace:
         self.cycle = cycle
 
     def begins_anew(self):
-        """Whether a long first cycle has let the run begin only now, because nothing had been driven in it yet."""
+        """Return True if nothing was sent during a long first cycle: the run's clock starts again now."""
         now = self._clock.now()
         if self.armed or now - self.heard <= LONGEST_PAUSE:
             return False
@@ -99,7 +99,7 @@ class Pace:
         return True
 
     def silence(self):
-        """How long the arm has heard nothing although it was driven, s; from now on it is counted anew."""
+        """Return how long the driven arm got no command, s, and start to count again."""
         now = self._clock.now()
         silence, self.heard = now - self.heard, now
         return silence if self.armed else 0.0
@@ -113,7 +113,7 @@ def load_controllers():
 
 
 def cut_said(confirmed):
-    """What is known after the drive was cut; confirmed: whether the board has answered."""
+    """Return a phrase about a drive that was cut. confirmed: whether the board has answered."""
     brakes = f"the board has not confirmed the cut: it brakes by itself within {WATCHDOG:g} s"
     return "the drive has been cut" if confirmed else brakes
 

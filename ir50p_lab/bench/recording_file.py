@@ -65,14 +65,7 @@ def event_text(t, text):
 
 
 def _one_line(value):
-    """A value as text, in which nothing looks like an escape of `_as_written`."""
-    return re.sub(r"\\(?=[xuU])", r"\\x5c", " ".join(str(value).split()))
-
-
-def _as_written(text):
-    """A value as it was; in older files the letters beyond ASCII are escapes, too."""
-    escape = r"\\(?:x([0-9a-f]{2})|u([0-9a-f]{4})|U(000[0-9a-f]{5}))"
-    return re.sub(escape, lambda found: chr(int(found[1] or found[2] or found[3], 16)), text.strip())
+    return " ".join(str(value).split())
 
 
 def read(path):
@@ -94,10 +87,10 @@ def read(path):
         if number == len(lines) and not text.endswith(("\n", "\r")):
             cut = number
         elif found := _EVENT.match(line):
-            events.append((_number(found[1], place), _as_written(found[2].rstrip(_PADDING))))
+            events.append((_number(found[1], place), found[2].rstrip(_PADDING).strip()))
         elif bare.startswith("#") and not bare.startswith("###"):  # at the end stand statistics; ###: a narrow column
             key, colon, value = bare.lstrip("# ").partition(":")
-            header |= {key.strip(): _as_written(value)} if colon else {}
+            header |= {key.strip(): value.strip()} if colon else {}
         elif bare and not separator:
             names = bare.replace('"', "")
             separator = names[1:2]

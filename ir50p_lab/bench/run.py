@@ -63,7 +63,10 @@ class Run:
             return Sample(t, sample.q.copy(), counts.copy(), pace.missed, rows)  # may be written into
 
     def paused(self, silence):
-        """Whether the drive was cut in this silence, s: then it is said and measured; too long a one ends the run."""
+        """Return True if the watchdog has cut the drive in this silence (s). Then say so and measure again.
+
+        Raises PauseError if the silence was too long: the run has ended.
+        """
         if silence < WATCHDOG:
             return False
         self.write_row()
@@ -93,7 +96,7 @@ class Run:
             self.recorder.write(sample, self.bench.command, aim, self.bench.gripper)
 
     def end_recording(self):
-        """What comes in this run from now on is not recorded."""
+        """Write the last row and close the recording; the run itself may go on."""
         try:
             self.write_row()
         except BaseException:  # a full disk; nobody may hear of it while a generator is closed

@@ -30,6 +30,11 @@ class PID(Controller):
         derivative_on: "measurement" or "error". anti_windup: False shows what windup does.
 
     Raises InputError on gains that are negative or not finite, or a period or filter that is not positive.
+
+    >>> from ir50p_lab.controllers import PID
+    >>> pid = PID(kp=(289, 225, 270), limit_pwm=255)
+    >>> pid.step(0.0, [0, 0, 0], ([0.1, 0, 0], [0, 0, 0], [0, 0, 0])).round(1) + 0.0
+    array([28.9,  0. ,  0. ])
     """
 
     takes_up = law.INTEGRAL

@@ -60,6 +60,10 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
             a soft sign that does not jump.
 
     Returns: (3, 20) or (n, 3, 20). Raises InputError on wrong shapes, numbers that are not finite, a bad g or sign.
+
+    >>> from ir50p_lab.identification import regressor
+    >>> regressor([[0, 0, 0]], [[0, 0, 0]], [[0, 0, 0]]).shape
+    (1, 3, 20)
     """
     q, qd, qdd = (vectors3(name, value, unit="SI") for name, value in (("q", q), ("qd", qd), ("qdd", qdd)))
     if q.ndim > 2 or qd.shape != q.shape or qdd.shape != q.shape:

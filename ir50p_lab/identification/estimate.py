@@ -56,7 +56,7 @@ class Estimate:
 
     @property
     def summary(self):
-        """What was found, which parameters may be zero, and the warnings, as a tuple of sentences."""
+        """The result in sentences: sizes and residuals, parameters that may be zero, warnings."""
         sentences = []
         for row, who in _rows(self.rows).items():
             counts = f"{len(self.columns[row])} parameters from {len(self.residuals)} samples"

@@ -19,7 +19,9 @@ from ir50p_lab.simulation.plant import DRY, FS, LIMIT, QS, make_plant
 from ir50p_lab.simulation.simulate import sampled
 
 _STEP = 0.02  # share of a parameter's scale, step of numerical derivatives: with less, stiction makes the output jump
-_AT = 0.02  # share of a parameter's scale: what is nearer to its bound stands at it; the search never quite reaches it
+# Share of a parameter's scale: nearer to its bound than this counts as at the bound: the search stops just short
+_AT = 0.02
+_AT_ERRORS = 0.1  # of its standard error: the same
 _QS = (0.005, 0.5)  # rad/s, bounds of the Stribeck speed
 _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 _COULOMB = [0, 1, 2], [NAMES.index(name) for name in ("fc1", "fc2", "fc3")]
@@ -165,7 +167,8 @@ def output_error(
         found = minimise(residuals, x0, slopes, bounds=(low, high), x_scale=scale, max_nfev=iterations, ftol=1e-4)
         bar.update(iterations - bar.n)  # it may have settled before
     spread = least_squares(found.jac.reshape(-1, 6, len(x0)), found.fun.reshape(-1, 6), names=names)
-    said, at = at_bounds(names, found.x, low, high, _AT * scale)
+    known = np.where(np.isfinite(spread.stderr), spread.stderr, 0.0)
+    said, at = at_bounds(names, found.x, low, high, np.maximum(_AT * scale, _AT_ERRORS * known))
     notes, stderr = [*spread.warnings, *said], np.where(at, np.inf, spread.stderr)
     if found.status == 0:
         notes.append(f"not settled after {iterations} steps: give more, or a better first estimate")

@@ -1,6 +1,7 @@
 """Whether a recording of a joint can be believed: meaningless data are refused, lesser flaws are warned of."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -22,12 +23,17 @@ _SPIKE = 0.05
 _LEAST = 3
 # u was clipped if the motion needs more than it had at its limits, by this share of its range. Measured on three
 # machines, limits at 60 to 90 %: 0.036 or more if clipped, at most 0.019 for a drive that saturates, late or not.
-_EXCESS = 0.025
+_EXCESS = (0.025, 2.5), (0.012, 4.0)  # refused, told: this share, and so many standard errors
 # Share of samples at a limit of u: up to the first nothing is tested, then _EXCESS, beyond the second _MISSED.
 _SELDOM, _OFTEN = 0.02, 0.25
-_MISSED = 0.07  # residual over spread of u: if more is left where u is at its limits often, it was clipped
+# residual over spread of u: if more is left where u is at its limits often, it was clipped: refused, told
+_MISSED = 0.07, 0.03
+# Failed readings: stays at one value of no more samples than this, and so many of them
+_FAILED, _FAILED_TIMES = 20, 2
 # Sampling periods from one neighbour to the other: if they are further apart, motion may look like an outlier
 _NEAR = 5.0
+_ONE_SIDED = 0.98  # share of the samples: if more have one sign, a size was recorded
+_SIGNED = 0.6  # residual over spread of u: if less is left with the sign of the other signal, that sign was missing
 _ONE_SIZE = 0.3  # jumps of x by more than half its range are of one size if they differ by less than this share of it
 # Per cent of the values on one side of a jump: so few lie between where the jump ends and the end of the range
 _END = 30
@@ -74,7 +80,8 @@ def check_signals(warned, t, q, u, turns=TURNS):
     for name, x in (("q", q), ("u", u)):
         if np.ptp(x) <= 1e-12 * np.abs(x).max():
             raise IdentificationError(f"{warned.who}{name} is constant at {x[0]:.6g}: check sensor, or drive harder")
-    places = check_outliers(warned, "q", t, q)
+    failed = _failed_readings(warned, t, q)
+    places = np.union1d(check_outliers(warned, "q", t, q, told=failed), failed).astype(int)
     for name, x, out in (("q", q, places), ("u", u, check_outliers(warned, "u", t, u))):
         _check_jumps(warned, name, np.delete(t, out), np.delete(x, out))
     if (values := len(np.unique(q))) < 3:
@@ -85,7 +92,36 @@ def check_signals(warned, t, q, u, turns=TURNS):
         warned.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
     if np.diff(t).min() > _SLOW_CLOCK:
         warned.add(f"one sample every {sampling_period(t):.4g} s: is t in ms or microseconds? Give seconds")
-    return _new(warned, q)
+    new = _new(warned, np.delete(t, failed), np.delete(q, failed))
+    used = np.zeros(len(q), dtype=bool)
+    used[np.setdiff1d(np.arange(len(q)), failed)] = new
+    return used
+
+
+def _on_grid(x):
+    """Whether all values of x (n,) lie on the steps of a counter or converter."""
+    steps, quantum = np.diff(np.unique(x)), quantum_of(x)
+    return quantum > 0 and np.abs(steps / quantum - np.rint(steps / quantum)).max() < 0.05
+
+
+def _failed_readings(warned, t, q):
+    """Warn of samples at which q leaps to one value, always the same, and soon back. Returns their indices.
+
+    So it looks when a sensor or its link answers 0 now and then; an angle that is wrapped moves on after its leap.
+    """
+    step = np.diff(q)
+    usual = np.median(np.abs(step)) if len(step) else 0.0
+    far = np.flatnonzero(np.abs(step) > max(_SPIKE * np.ptp(q), 15 * usual))
+    stays = [(a + 1, b + 1) for a, b in pairwise(far) if b - a <= _FAILED]
+    stays = [(a, b) for a, b in stays if np.ptp(q[a:b]) == 0 and abs(q[b] - q[a - 1]) < 0.4 * abs(step[a - 1])]
+    values, counts = np.unique([q[a] for a, _ in stays], return_counts=True)
+    if not len(values) or counts.max() < _FAILED_TIMES:
+        return np.empty(0, dtype=int)
+    value = values[np.argmax(counts)]
+    stays = [(a, b) for a, b in stays if q[a] == value]
+    said = f"q leaps to {value:.4g} and back {len(stays)} time(s), first at t = {t[stays[0][0]]:.6g} s"
+    warned.add(f"{said}: failed readings of the sensor, left out")
+    return np.concatenate([np.arange(a, b) for a, b in stays])
 
 
 def _check_jumps(warned, name, t, x):
@@ -109,6 +145,8 @@ def _check_jumps(warned, name, t, x):
     turn = np.median(np.abs(step - np.convolve(step, (0.5, 0.0, 0.5), "same"))[far])  # without the motion
     near = known[np.argmin(np.abs(known - turn))]
     turn = near if abs(near - turn) < 0.01 * turn else turn
+    if name == "u" and not _on_grid(x):
+        return
     said = f"{name} jumps by {turn:.6g} {len(far)} time(s), first at t = {t[far[0] + 1]:.6g} s"
     if low < _END and high > 100 - _END and (name == "q" or np.ptp(np.unwrap(x, period=turn)) < 0.9 * np.ptp(x)):
         why = "a whole turn was wrapped (an encoder before its gear? A register without sign?)"
@@ -118,16 +156,23 @@ def _check_jumps(warned, name, t, x):
         warned.refuse(f"{name} has a sign bit: {said}; use {mend}")
 
 
-def _new(warned, q):
-    """Which samples of q (n,) are new, where a slow sensor repeats its value over several rows; else all True."""
+def _new(warned, t, q):
+    """Which samples of q (n,) are new, where a slow sensor repeats its value over several rows; else all True.
+
+    Its rows may come at any rhythm. A joint that stands still repeats its angle, too; but it does so where it is slow.
+    """
     steps = np.abs(np.diff(q))
-    moved = np.flatnonzero(steps)
-    every = (len(q) - 1) / max(len(moved), 1)
-    regular = np.mean(np.abs(np.diff(moved) - every) < 0.6) >= 0.7  # irregular: the joint stood still now and then
-    if every < 1.9 or not regular or np.median(steps[moved]) < 4 * quantum_of(q):  # small steps: a coarse sensor
+    new = np.r_[True, steps > 0]
+    places = np.flatnonzero(new)
+    every = len(q) / len(places)
+    if every < 1.3 or np.median(steps[steps > 0]) < 4 * quantum_of(q):  # small steps: a coarse sensor
+        return np.ones(len(q), dtype=bool)
+    speed = np.abs(np.diff(q[places]) / np.diff(t[places]))  # from one new value to the next
+    repeated = speed[np.searchsorted(places[1:], np.flatnonzero(~new)).clip(max=len(speed) - 1)]
+    if np.median(repeated) < 0.3 * np.sqrt(np.mean(speed**2)):
         return np.ones(len(q), dtype=bool)
     warned.add(f"q is new only in every {every:.3g}th row (a slow sensor): the others were left out")
-    return np.r_[True, steps > 0]
+    return new
 
 
 def _hung(warned, t, q):
@@ -181,8 +226,8 @@ def _is_cut_off(t, x, begin, end):
     return near > 3 * max(lost, 0.0) + unsure and fast and 2 * quantum + 1e-4 * np.ptp(x) < hidden < 3 * np.ptp(x)
 
 
-def check_outliers(warned, name, t, x, remedy="leave these samples out"):
-    """Warn of samples of x (n,) that are far from both neighbours, which agree. Returns their indices.
+def check_outliers(warned, name, t, x, remedy="leave these samples out", told=()):
+    """Warn of samples of x (n,) that are far from both neighbours, which agree. Returns their indices without `told`.
 
     Such are lost counts and bad bytes. Torque ripple is not: there all neighbours are far from each other.
     """
@@ -193,7 +238,7 @@ def check_outliers(warned, name, t, x, remedy="leave these samples out"):
     around = np.maximum(median_filter(off, 41, mode="nearest"), np.median(off)) if len(off) else off
     far = off > np.maximum(max(_SPIKE * (high - low), _LEAST * quantum_of(x)), 12 * around)
     far &= t[2:] - t[:-2] < _NEAR * np.median(np.diff(t))
-    places = np.flatnonzero(far & (np.abs(x[2:] - x[:-2]) < 0.4 * off)) + 1
+    places = np.setdiff1d(np.flatnonzero(far & (np.abs(x[2:] - x[:-2]) < 0.4 * off)) + 1, told)
     if len(places):
         k = places[0]
         warned.add(f"{name} has {len(places)} outlier(s), the first at t = {t[k]:.6g} s, {x[k]:.4g}: {remedy}")
@@ -222,10 +267,36 @@ def check_clipped_drive(warned, found):
     beside = least_squares(np.column_stack([late, found.limits]), found.y, tolerance=1e-3)
     excess, sigma = beside.x[-2:] * (1, -1) / np.ptp(found.y), beside.stderr[-2:] / np.ptp(found.y)
     share = np.mean(found.limits.max(axis=1) > 0.5)
-    needs_more = bool((excess > np.maximum(_EXCESS, 2.5 * sigma)).any()) and share > _SELDOM
-    if missed > _MISSED if share > _OFTEN else needs_more:
-        said = f"it is at its limits in {share:.0%} of the record, but the motion needs more or other values there"
-        warned.refuse(f"u was clipped: {said}; record a wider range, or drive less (if it is late, give delay=)")
+    needs_more, may_need_more = (
+        bool((excess > np.maximum(least, errors * sigma)).any()) and share > _SELDOM for least, errors in _EXCESS
+    )
+    often = share > _OFTEN
+    said = f"it is at its limits in {share:.0%} of the record, but the motion needs more or other values there"
+    remedy = "record a wider range, or drive less (if it is late, give delay=)"
+    if missed > _MISSED[0] if often else needs_more:
+        warned.refuse(f"u was clipped: {said}; {remedy}")
+    elif may_need_more or (often and missed > _MISSED[1]):
+        warned.add(f"u may have been clipped: {said}; {remedy}")
+
+
+def without_sign(found):
+    """A sentence if u, or the speed, was recorded as a size without its sign and the other's sign explains it; else "".
+
+    A current sensor gives such a u, PWM counts beside a direction pin do, and one channel of an encoder such a q.
+    """
+    one_sided = [np.mean(x > 0) > _ONE_SIDED or np.mean(x < 0) > _ONE_SIDED for x in (found.y, found.v)]
+    if one_sided[0] == one_sided[1]:
+        return ""
+    if one_sided[0]:
+        A, y = found.A, found.y * np.sign(found.v)
+        said = "u has one sign only, that of a size, and u * np.sign(qd) fits: give u with the sign of its direction"
+    else:
+        A, y = found.A * np.sign(found.y)[:, None], found.y
+        mend = "np.cumsum(np.abs(np.diff(q, prepend=q[0])) * np.sign(u))"
+        said = (
+            f"the joint moves one way only though u changes its sign, and with the sign of u it fits: give {mend} as q"
+        )
+    return said if least_squares(A, y, tolerance=1e-3).rms < _SIGNED * np.std(y) else ""
 
 
 def check_contradiction(warned, recordings, fit, least):

@@ -33,6 +33,9 @@ _EDGE = 1.5  # periods of the cut-off left out at both ends of a run, where the 
 _SLOW = 0.1  # share of the rms speed: slower samples are left out unless slow= says otherwise
 _DROWNED = 3.0  # rms speed over that of its noise: if it is less, the data are refused
 
+# Which samples of u stand at a limit: so many deviations of its noise from the extreme, and no more of its range
+_SCATTER, _NEAR_LIMIT = 7.0, 0.15
+
 # How far the errors are widened
 _UNSURE = 0.5  # sampling periods: standard deviation of the delay of u beyond delay=, before the data say more
 _EXACT = 2e-3  # share of a parameter: its standard error is no less, for derivatives and interpolation are no better
@@ -239,6 +242,11 @@ def _band(runs):
     return SimpleNamespace(motion_hz=f[motion], clean_hz=f[clean], speed=speed, speed_noise=speed_noise)
 
 
+def _noise(x):
+    """Standard deviation of white noise on a smooth x (n,), from its fourth differences."""
+    return float(np.median(np.abs(np.diff(x, 4)))) / 0.6745 / math.sqrt(70)
+
+
 def _smooth(x, cutoff_hz, rate):
     return x if math.isinf(cutoff_hz) else low_pass(x, cutoff_hz, rate, order=3, kind="zero-phase")
 
@@ -262,7 +270,11 @@ def _table(runs, cutoff_hz, sign_hz, slow):
     low pass at sign_hz: a smoother speed changes its sign too early or too late.
     """
     every = np.concatenate([run.u[:, 0] for run in runs])
-    low, high = every.min() + 1e-3 * np.ptp(every), every.max() - 1e-3 * np.ptp(every)
+    near = min(
+        max(1e-3 * np.ptp(every), _SCATTER * _noise(np.concatenate([run.u[:, 1] for run in runs]))),
+        _NEAR_LIMIT * np.ptp(every),
+    )
+    low, high = every.min() + near, every.max() - near
     names = ("columns", "u", "slopes", "limits", "q", "v", "snap", "of")
     parts = []
     for run in runs:
@@ -340,7 +352,9 @@ def _check_fit(warned, found, others, with_gravity):
     left, gravity = found.left, others.get("gravity", found.left).rms / found.left.rms
     explained = 1 - (found.misfit * gravity) ** 2
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
-    if explained < _EXPLAINED or (F < _F and explained < 0.5):
+    if found.misfit > _POOR and (sentence := recording_checks.without_sign(found)):
+        warned.refuse(sentence)
+    elif explained < _EXPLAINED or (F < _F and explained < 0.5):
         share = f"{max(explained, 0):.1%} of it (F = {F:.1f}, needed {_F:.0f}; too few independent samples?)"
         warned.refuse(f"u does not belong to this motion, which explains {share}: another joint or clock? A spring?")
     elif F < _F:

@@ -11,6 +11,6 @@ def board_name(vid, pid):
 
 
 def permission_remedy(device):
-    """What to do when this user may not open the serial port `device`."""
+    """Return what to do if this user may not open the serial port `device`."""
     linux = "on Linux 'sudo usermod -aG dialout $USER' (on Arch: uucp), then log out and in again"
     return f"'ls -l {device}' shows who may; {linux}; on a managed Mac ask its administrator"

@@ -123,7 +123,7 @@ def _run(arguments, root):
 
 
 def _first_page(root):
-    """What makes JupyterLab open 00 while nothing is the student's yet; later it opens what was open last."""
+    """Return the option that opens JupyterLab on 00; [] once the student has files: it opens what was open last."""
     pages = [path.name for path in (root / "notebooks").glob("00_*.ipynb")]
     if pages:
         from ir50p_lab.home import home  # beside the launcher, but of the standard library, too

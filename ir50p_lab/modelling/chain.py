@@ -53,6 +53,13 @@ def frames(arm, q):
 
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (4, 4, 4) or (n, 4, 4, 4); element i takes coordinates of frame i to the base.
+
+    >>> from ir50p_lab.modelling import IR50P, frames
+    >>> frames(IR50P, [0, 0, 0])[3].round(3) + 0.0
+    array([[1.   , 0.   , 0.   , 0.572],
+           [0.   , 1.   , 0.   , 0.   ],
+           [0.   , 0.   , 1.   , 0.285],
+           [0.   , 0.   , 0.   , 1.   ]])
     """
     l1, l2, l3 = lengths(arm)
     q = vectors3("q", q)
@@ -93,6 +100,10 @@ def forward_kinematics(arm, q):
 
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (3,) or (n, 3) m. The orientation is `frames(arm, q)[..., 3, :3, :3]`.
+
+    >>> from ir50p_lab.modelling import IR50P, forward_kinematics
+    >>> forward_kinematics(IR50P, [0, 0.8, -1.2]).round(3)
+    array([0.482, 0.   , 0.284])
     """
     p = evaluate(_tip, (lengths(arm),), q=q)
     warn_of_degrees(arm, q)

@@ -33,6 +33,12 @@ def jacobian(arm, q):
 
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (6, 3) or (n, 6, 3); rows 0-2 in m/rad (Jv), rows 3-5 without unit (Jw).
+
+    >>> from ir50p_lab.modelling import IR50P, jacobian
+    >>> jacobian(IR50P, [0, 0, 0])[:3].round(3) + 0.0
+    array([[0.   , 0.   , 0.   ],
+           [0.572, 0.   , 0.   ],
+           [0.   , 0.572, 0.372]])
     """
     J = evaluate(_jacobian, (lengths(arm), _SIX), q=q)
     warn_of_degrees(arm, q)

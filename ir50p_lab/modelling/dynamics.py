@@ -83,6 +83,12 @@ def mass_matrix(arm, q):
     Args: arm: Arm or theta; q: (3,) or (n, 3) rad.
     Returns: (3, 3) or (n, 3, 3), kg m^2. Symmetric and positive definite for an Arm; row-wise for a theta
     with unequal rows. Raises InputError.
+
+    >>> from ir50p_lab.modelling import IR50P, mass_matrix
+    >>> mass_matrix(IR50P, [0, 0, 0]).round(3)
+    array([[0.3  , 0.   , 0.   ],
+           [0.   , 0.33 , 0.059],
+           [0.   , 0.059, 0.152]])
     """
     return _evaluate(_mass, arm, q=q)
 
@@ -106,6 +112,12 @@ def coriolis_matrix(arm, q, qd):
 
     Args: arm: Arm or theta; q, qd: (3,) or (n, 3), rad and rad/s.
     Returns: (3, 3) or (n, 3, 3), N m s/rad. C qd are the centrifugal and Coriolis torques (1.97 corrected).
+
+    >>> from ir50p_lab.modelling import IR50P, coriolis_matrix
+    >>> coriolis_matrix(IR50P, [0, 0.8, -1.2], [0, 0, 0]) + 0.0
+    array([[0., 0., 0.],
+           [0., 0., 0.],
+           [0., 0., 0.]])
     """
     return _evaluate(_coriolis, arm, q=q, qd=qd)
 
@@ -121,6 +133,10 @@ def gravity(arm, q, *, g=None):
     """Gravity torques g(q) = dU/dq: what holds the arm still    (1.114), 1.5.3c corrected.
 
     Args: arm: Arm or theta; q: (3,) or (n, 3) rad; g: of a theta, m/s^2, default 9.81. Returns: shape of q, N m.
+
+    >>> from ir50p_lab.modelling import IR50P, gravity
+    >>> gravity(IR50P, [0, 0, 0]).round(2)
+    array([0.  , 3.79, 1.33])
     """
     return _evaluate(_gravity, arm, g, q=q)
 
@@ -141,6 +157,10 @@ def inverse_dynamics(arm, q, qd, qdd, *, g=None):
 
     Args: arm: Arm or theta; q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2; g: of a theta, m/s^2, default 9.81.
     Returns: shape of q, N m (PWM counts for a theta in PWM). Raises InputError.
+
+    >>> from ir50p_lab.modelling import IR50P, inverse_dynamics
+    >>> inverse_dynamics(IR50P, [0, 0, 0], [0, 0, 0], [0, 0, 1]).round(2)
+    array([0.06, 3.76, 1.53])
     """
     return _evaluate(_inverse, arm, g, q=q, qd=qd, qdd=qdd)
 
@@ -165,6 +185,11 @@ def forward_dynamics(arm, q, qd, tau, *, g=None):
         theta, m/s^2, default 9.81.
     Returns: shape of q, rad/s^2.
     Raises: InputError on bad input, or if M is singular at a pose (a link without any inertia).
+
+    >>> from ir50p_lab.modelling import IR50P, forward_dynamics, inverse_dynamics
+    >>> q, qd = [0, 0.8, -1.2], [0, 0, 0]
+    >>> forward_dynamics(IR50P, q, qd, inverse_dynamics(IR50P, q, qd, [0, 0, 1])).round(3) + 0.0
+    array([0., 0., 1.])
     """
     return _evaluate(_forward, arm, g, q=q, qd=qd, tau=tau)
 
@@ -186,6 +211,10 @@ def energy(arm, q, qd, *, g=None):
     Args: arm: Arm or theta with equal inertial rows; q, qd: (3,) or (n, 3); g: of a theta, m/s^2, default 9.81.
     Returns: Energy. Raises InputError for a theta with unequal rows: motors of unequal gain scale each row by
     another factor, so that no common energy exists.
+
+    >>> from ir50p_lab.modelling import IR50P, energy
+    >>> float(energy(IR50P, [0, 0, 0], [0, 0, 0]).total)
+    0.0
     """
     theta, g = as_theta(arm, g)
     inertial = theta[:, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19]]

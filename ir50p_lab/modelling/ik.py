@@ -123,6 +123,13 @@ def inverse_kinematics(arm, p):
     Returns: IKSolutions with q of shape (4, 3) or (n, 4, 3), angles in (-pi, pi].
     Raises: UnreachableError (with .distance in m and .nearest (3,) m) if a point is outside the workspace;
     InputError on a wrong shape or a number that is not finite.
+
+    >>> from ir50p_lab.modelling import IR50P, inverse_kinematics
+    >>> inverse_kinematics(IR50P, [0.42, -0.15, 0.03]).q.round(3)
+    array([[-0.343,  0.115, -0.958],
+           [-0.343, -1.154,  0.958],
+           [ 2.799, -1.988, -0.958],
+           [ 2.799,  3.027,  0.958]])
     """
     try:
         q = evaluate(_branches, (lengths(arm), _FOUR), p=p)

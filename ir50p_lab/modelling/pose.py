@@ -41,7 +41,15 @@ def rot_y(angle):
 
 
 def rot_z(angle):
-    """Rotation about z by `angle` (...) rad, (1.6): (...,3,3). Raises InputError for NaN or infinity."""
+    """Rotation about z by `angle` (...) rad, (1.6): (...,3,3). Raises InputError for NaN or infinity.
+
+    >>> import numpy as np
+    >>> from ir50p_lab.modelling import rot_z
+    >>> rot_z(np.pi / 2).round(3)
+    array([[ 0., -1.,  0.],
+           [ 1.,  0.,  0.],
+           [ 0.,  0.,  1.]])
+    """
     return _elementary("Z", angle)
 
 

@@ -48,6 +48,11 @@ def quintic(q0, q1, *, duration, start=0.0):
     Args: q0, q1: (3,) rad (may be equal); duration: s, > 0; start: s.
     Returns: Reference with duration start + duration. Raises InputError on a wrong shape, a number that is not finite
     or a duration that is not positive.
+
+    >>> from ir50p_lab.signals import quintic
+    >>> q, qd, qdd = quintic([0, 0, 0], [1, 0, -1], duration=2)(1.0)
+    >>> q.round(3)
+    array([ 0.5,  0. , -0.5])
     """
     start, duration = number("start", start, unit="s"), number("duration", duration, "> 0", unit="s", hint=_TIME)
     end, points = start + duration, (pose("q0", q0), pose("q1", q1))

@@ -32,6 +32,11 @@ def hold(q):
 
     Args: q: (3,) rad. Returns: Reference with duration 0. Raises InputError on a wrong shape or a number that is not
     finite.
+
+    >>> from ir50p_lab.signals import hold
+    >>> q, qd, qdd = hold([1.57, 1.57, -1.05])(3.0)
+    >>> q
+    array([ 1.57,  1.57, -1.05])
     """
     return Steps(times=(0.0,), values=(pose("q", q),), duration=0.0)
 
@@ -49,6 +54,10 @@ def steps(times, values):
     Returns: Reference; its duration is the time of the last jump.
     Raises: InputError on wrong shapes, numbers that are not finite, times that do not increase, or a first time
     after 0 (the pose before it would be unknown).
+
+    >>> from ir50p_lab.signals import steps
+    >>> steps([0, 1], [[0, 0, 0], [0.2, 0, 0]])(1.5)[0]
+    array([0.2, 0. , 0. ])
     """
     times, values = time_vector("times", times), vectors3("values", values)
     if values.ndim != 2 or len(times) != len(values) or len(times) == 0:

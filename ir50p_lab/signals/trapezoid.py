@@ -57,6 +57,11 @@ def trapezoid(q0, q1, *, v_max, a_max, start=0.0):
 
     Returns: Reference with duration start + T; `.T` s is the time of the motion itself.
     Raises: InputError on a wrong shape, a number that is not finite, or a limit that is not positive.
+
+    >>> from ir50p_lab.signals import trapezoid
+    >>> way = trapezoid([0, 0, 0], [1, 0, 0], v_max=0.5, a_max=1)
+    >>> way.duration, way(way.duration)[0].round(3)
+    (2.5, array([1., 0., 0.]))
     """
     q0, q1, start = pose("q0", q0), pose("q1", q1), number("start", start, unit="s")
     v_max, a_max = per_joint("v_max", v_max, "> 0", unit="rad/s"), per_joint("a_max", a_max, "> 0", unit="rad/s^2")

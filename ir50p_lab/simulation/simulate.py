@@ -52,6 +52,13 @@ def simulate(
     Raises: InputError on bad input, or if the run leaves all bounds (an unstable loop: it says when).
     Warns: UnstableLoopWarning if the run stays finite but looks unstable (`looks_unstable` says how it looks; the
     result keeps the sentence as `unstable`). Without a controller nothing is looked for.
+
+    >>> from ir50p_lab.controllers import PID
+    >>> from ir50p_lab.modelling import IR50P
+    >>> from ir50p_lab.simulation import simulate
+    >>> run = simulate(IR50P, PID(kp=600, kd=40, limit_pwm=255), [0.5, 0.8, -1.2], duration=3)
+    >>> run.q.shape, run.unit
+    ((301, 3), 'PWM')
     """
     steps, t = _times(duration, period, step)
     q0, qd0 = vector3("q0", q0), vector3("qd0", qd0, unit="rad/s")

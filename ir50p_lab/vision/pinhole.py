@@ -30,6 +30,10 @@ class Pinhole:
         size: (width, height) of the picture, pixels.
 
     Raises InputError for a K that is no intrinsic matrix, a wrong number of coefficients, or a size below 1.
+
+    >>> from ir50p_lab.vision import Pinhole
+    >>> Pinhole.simple(700).rays([319.5, 239.5])
+    array([0., 0., 1.])
     """
 
     K: np.ndarray

@@ -96,7 +96,7 @@ class SceneTruth(namedtuple("SceneTruth", "balls pinhole")):
 
     @property
     def red_balls(self):
-        """Those of the colour "red", largest first."""
+        """The red balls, largest first."""
         return tuple(sorted((ball for ball in self.balls if ball.colour == "red"), key=lambda ball: -ball.radius))
 
 

@@ -168,7 +168,7 @@ class BenchPanel(widgets.VBox):
             self.bench.cut()
 
     def set(self, **values):
-        """Move sliders from Python, as the hand does: q1..q3 in deg, kp1..kd3. Raises what this leads to."""
+        """Move sliders from Python: q1..q3 in deg, kp1..kd3. Raises the error that a moved slider causes."""
         for name, value in values.items():
             if name not in self.controls:
                 raise InputError(f"no slider {name!r}; this panel has {', '.join(self.controls)}")
@@ -210,7 +210,7 @@ class BenchPanel(widgets.VBox):
             self._quiet.on = False
 
     def _guarded(self, what, *args, **options):
-        """What goes wrong in a callback is invisible in Lab: it goes into the status line."""
+        """Show errors of a callback in the status line: JupyterLab shows them nowhere."""
         if getattr(self._quiet, "on", False):
             return
         try:

@@ -21,7 +21,7 @@ _WAYS = {
 
 
 def so_far():
-    """How far each notebook misses the ball's place, and how long it took, from the student's lab book: LabFigure.
+    """Plot how far each notebook missed the ball and how long it took, from the student's lab book: LabFigure.
 
     What is not done yet has an empty row; a miss below 0.01 mm stands at 0.01.
     """

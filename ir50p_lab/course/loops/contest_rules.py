@@ -166,24 +166,11 @@ def score_of(runs):
     return Score(np.max([grade_run(given, recording.u, q) for given, recording, q in runs], axis=0))
 
 
-class _Again:
-    """Sends the commands of a run once more."""
-
-    unit = "PWM"
-
-    def __init__(self, u):
-        self._commands = iter(u)
-
-    def step(self, t, q, reference):
-        return next(self._commands)
-
-
 def contest(controller, name):
     """Enter the contest: RUNS arms drawn for this attempt only. Prints term by term; keeps the attempt, won or lost.
 
-    controller: any object with `step`; what runs is this object, in Python, not a twin. What is scored is what its
-    commands do to a second copy of the same arms. name: what you changed, kept with the attempt and shown in
-    `history`. Returns the Score. Raises what the controller raises: that attempt is lost.
+    controller: any object with `step`; what runs is this object, in Python, not a twin. name: what you changed, kept
+    with the attempt and shown in `history`. Returns the Score. Raises what the controller raises: that attempt is lost.
     """
     check_controller(controller)
     arm = load_arm()
@@ -192,8 +179,7 @@ def contest(controller, name):
     # lost until it has ended: else whoever stops on an unlucky arm could enter until all are lucky
     before = _keep(entry | {"score": _LOST})
     try:
-        commands = [drive(controller, seed, arm)[1].u for seed in seeds]
-        found = score_of([drive(_Again(u), seed, arm) for u, seed in zip(commands, seeds, strict=True)])
+        found = score_of([drive(controller, seed, arm) for seed in seeds])
     except LabError as fault:
         found = Score(np.full((5, 3), np.inf), str(fault))
     _keep(entry | {"score": min(found.value, _LOST), "decides": found.decides})

@@ -59,7 +59,7 @@ def gain_sliders(gains):
 
 
 def sliders_of(controller, arm, practice):
-    """What the sliders of a panel call, and a sentence that says whose controller they move: (update, words).
+    """Return (update, words): the callback of a panel's sliders, and a sentence that says whose controller they move.
 
     The picture is that of one arm, the score that of all practice arms.
     While the compiled twin sends the same commands as the student's class, the twin runs; else the student's Python.

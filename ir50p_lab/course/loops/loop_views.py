@@ -22,7 +22,7 @@ def three_loops():
 
 
 def weight_over_angle(arm, push):
-    """What the shoulder's weight asks for in counts over its angle, elbow straight, and a constant push: LabFigure."""
+    """Plot the counts that hold the shoulder over its angle, elbow straight, beside a constant push: LabFigure."""
     figure, ax = subplots(7.4, 3.8)
     q2 = np.linspace(arm.q_min[1], arm.q_max[1], 200)
     weight = gravity(arm, np.column_stack([0 * q2, q2, 0 * q2]))[:, 1] / arm.actuators.gain[1]
@@ -40,7 +40,7 @@ def weight_over_angle(arm, push):
 
 
 def ends(pushes, angles, target):
-    """Where the shoulder ends under constant pushes: LabFigure."""
+    """Plot where the shoulder ends under constant pushes: LabFigure."""
     figure, ax = subplots(7.4, 3.4)
     ax.plot(pushes, angles, "o", ms=8, label="after 30 s")
     ax.axhline(target, **SETPOINT, label="wanted")

@@ -57,7 +57,7 @@ def _note(one):
 
 
 def _named(key):
-    """What a number or a figure of the lab book is; the student's own have their names already."""
+    """Return the title of a number or figure of the lab book: from names.txt, else made from its key."""
     return _text(_NAMES.get(key, key.replace(".", ", ").replace("_", " ")))
 
 

@@ -88,7 +88,7 @@ def _hue_off(hsv, loose, colour):
 
 
 def _other_paint(hsv, colour):
-    """Why a paint (n, 3) HSV is not of the colour sought: nearly black; for reds skin or brown; "" if it may be."""
+    """Return why colours (n, 3) HSV are not the one sought (nearly black; a red: skin or brown), "" if they may be."""
     saturation, value = np.percentile(hsv[:, 1], 80) / 255, np.percentile(hsv[:, 2], 90) / 255
     if value < 0.2:
         return f"nearly black: value {value:.2f}"
@@ -103,7 +103,7 @@ def _other_paint(hsv, colour):
 
 
 def _other_shape(outline, filled):
-    """Why a thing is a ring or a polygon (a nut); "" if it may be a ball. filled: (rays, 9), of colour or gloss.
+    """Return "a ring" or "a nut" if that is its shape, "" if it may be a ball. filled: (rays, 9), of colour or gloss.
 
     A polygon of n corners has its edge farther out n times around: one wave of n explains nearly all of `off`.
     """

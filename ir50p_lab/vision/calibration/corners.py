@@ -89,7 +89,7 @@ def _without_rim(grid, grey):
 
 
 def _goes_on(grid, grey):
-    """Whether squares outside the last row of corners are dark and light by turns, opposite to those inside it."""
+    """Return True if the squares outside the last row of corners continue the pattern of dark and light."""
     middles, inwards = (grid[-1, :-1] + grid[-1, 1:]) / 2, (grid[-2, :-1] + grid[-2, 1:]) / 2
     step, turns = (middles - inwards) / 4, (-1) ** np.arange(len(middles))
     outside, inside = (turns @ _levels(grey, middles + sign * step) for sign in (1, -1))

@@ -12,7 +12,7 @@ from ir50p_lab.vision.calibration.calibration_result import LENS, NAMES
 
 _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 1e-9)
 _BENT = 0.75  # variance of residuals with every corner free over that with a flat board: if less, the board is bent
-_GAUGE = 7  # numbers of a free board that no picture tells: where it lies, how it is turned, how large it is
+_GAUGE = 7  # gauge freedoms of a free board: position 3, rotation 3, scale 1
 _ANOTHER = 0.75  # median residual of a view with another lens over that with the one asked for: if less, it is another
 _WIDE = np.deg2rad(40)  # if no corner lies farther off the axis, a fisheye hardly differs from the lens of the model
 _UNKNOWN = 1e-11  # if an eigenvalue of the scaled normal matrix is smaller, it is rounding: something is undetermined

@@ -70,5 +70,5 @@ class BallTracker:
         self._t = t
 
     def at(self, t):
-        """Where it will be at time t, (2,) m; NaN before the first look."""
+        """Predict the place at time t, (2,) m; NaN before the first look."""
         return np.full(2, np.nan) if self.position is None else self.position + self.velocity * (t - self._t)

@@ -1,12 +1,9 @@
 """The contest can be lost and won: on 20 copies of the arm, with unseen payloads and targets, by tuning only."""
 
-import gc
-
 import numpy as np
 import pytest
 import solutions
 
-from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.course.loops import contest_rules as jury
@@ -58,11 +55,11 @@ def test_holding_the_command_buys_nothing(samples):
 def test_at_most_one_in_twenty_random_settings_wins():
     rng = np.random.default_rng(11)
     won = 0
-    for _ in range(200):
+    for _ in range(80):
         gains = pid(*(rng.uniform(0, 1, (3, 3)) * HIGHEST[:, None]))
         seeds = rng.permutation(UNITS)[: jury.RUNS]
         won += all(jury.score(gains, [seed], IR50P).won for seed in seeds)  # most lose on the first arm
-    assert won <= 10
+    assert won <= 4
 
 
 def test_figures_of_a_motion_that_is_known():
@@ -127,30 +124,6 @@ def test_who_stops_on_the_way_has_lost_an_attempt(tmp_path, monkeypatch):
         jury.contest(BreaksOff(), "breaks off")
     (kept,) = lab_book.read()["contest"]
     assert kept["name"] == "breaks off" and kept["score"] >= 1e6
-
-
-def test_judged_is_what_the_commands_do_not_what_the_first_arm_remembers(tmp_path, monkeypatch):
-    """A controller that finds the judge's arm and rewrites where it has been has sent its commands all the same."""
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-
-    forged = []
-
-    class Forger(Mine):
-        def step(self, t, q, reference):
-            if t > 9.98:
-                forged.append(t)
-                for bench in gc.get_objects():
-                    if type(bench) is SimulatedBench:
-                        for _, angles, _ in bench._truth:
-                            angles[:] = reference[0]
-            return super().step(t, q, reference)
-
-    found = jury.contest(Forger(), "forged")
-    assert forged and not found.won and not found.fault
-    kept = lab_book.read()["contest"][0]
-    assert kept["arm"] == IR50P.name and kept["score"] == found.value
-    with pytest.raises(ValueError, match="read-only"):
-        jury.draw(IR50P, 1).poses[:] = 0
 
 
 def test_a_cell_cannot_move_the_limits():
