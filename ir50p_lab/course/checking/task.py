@@ -22,12 +22,11 @@ class Mistake:
     """A typical mistake.
 
     wrong: a function with the task's arguments that makes this mistake. says: the symptom in the student's numbers and
-    where to look, never the corrected expression. of_code: it is a change of the course's solution, told in its names.
+    where to look, never the corrected expression.
     """
 
     wrong: Callable
     says: str
-    of_code: bool = False
 
 
 def text_of(*functions):
@@ -106,7 +105,7 @@ class Task:
     arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
-    routes: other solutions, as text; rights: functions of several results that are right as well;
+    rights: functions of several results that are right as well;
     parts: names of what stands beside each other in the answer.
     results: names, where several things are returned: each is graded by itself; `tolerance` and `same` may be tuples
     then, one for each.
@@ -126,7 +125,6 @@ class Task:
     cases: Callable | None = None
     leans_on: tuple = ()
     slips: tuple = ()
-    routes: tuple = ()
     rights: tuple = ()
     parts: tuple = ()
     results: tuple = ()
@@ -204,6 +202,19 @@ def words(name, beside):
     hints = tuple(hint.replace("\n", " ") for hint in text["hints"].split("\n\n"))
     test = text["test"] + "\n" if "test" in text else ""
     return {"asks": text["returns"].replace("\n", " "), "hints": hints, "test": test}
+
+
+def notebook_tasks(beside, **asked):
+    """Tasks of functions that stay in their notebook: {name: Task}; NAME=(right, cases, what it returns, options).
+
+    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module.
+    """
+    text = Path(beside).with_name("notebook_functions.txt").read_text(encoding="utf-8")
+    texts = dict(zip(asked, text.strip().split("\n----\n"), strict=True))
+    return {
+        name: Task(name, asks, right, loan=texts[name], cases=cases, **options)
+        for name, (right, cases, asks, options) in asked.items()
+    }
 
 
 def _agrees(returned, expected, same, tolerance):
