@@ -207,10 +207,9 @@ def words(name, beside):
 def notebook_tasks(beside, **asked):
     """Tasks of functions that stay in their notebook: {name: Task}; NAME=(right, cases, what it returns, options).
 
-    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module.
+    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module, each below its name.
     """
-    text = Path(beside).with_name("notebook_functions.txt").read_text(encoding="utf-8")
-    texts = dict(zip(asked, text.strip().split("\n----\n"), strict=True))
+    texts = sections("notebook_functions", beside)
     return {
         name: Task(name, asks, right, loan=texts[name], cases=cases, **options)
         for name, (right, cases, asks, options) in asked.items()
