@@ -99,7 +99,12 @@ def test_a_right_answer_in_parts_of_unlike_shape_passes(task):
 @pytest.mark.parametrize(
     ("task", "old", "new", "words"),
     [
-        (FIT_LINE, "scatter**2 * inverse", "scatter * inverse", "slope, offset and scatter are right; covariance is not"),
+        (
+            FIT_LINE,
+            "scatter**2 * inverse",
+            "scatter * inverse",
+            "slope, offset and scatter are right; covariance is not",
+        ),
         (FIT_LINE, "slope, offset, scatter**2", "offset, slope, scatter**2", "slope and offset have changed places"),
         (
             FIT_LINE,
