@@ -181,12 +181,6 @@ def test_realtime_keeps_the_pace_of_the_clock_without_drift():
     assert sample.t == 1999 * 0.01
 
 
-def test_realtime_holds_for_follow():
-    bench, clock = on_a_clock()
-    assert len(bench.follow(pid(), TARGET, 5)) == 500
-    assert clock.now() == pytest.approx(4.99, abs=0.001)
-
-
 def test_pot_errors_of_a_unit_show_in_the_angles_and_a_calibration_takes_them_out():
     unit = ArmInstance(
         spread=0, noise=0, pot_bow=(0, 0, 0), pot_shift=(3, 3, 3), pot_slope=(1.01, 1, 1), backlash=(0, 0, 0)

@@ -52,6 +52,7 @@ def test_a_fault_ends_the_run_and_the_arm_sinks(fault, error, after):
     assert (turned > 10) == (fault == "motor")
 
 
+@pytest.mark.timing
 def test_a_process_that_stops_is_cut():
     raised, seconds, *_ = broken("process")
     assert isinstance(raised, PauseError) and seconds < 1.5
