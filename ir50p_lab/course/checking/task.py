@@ -22,12 +22,11 @@ class Mistake:
     """A typical mistake.
 
     wrong: a function with the task's arguments that makes this mistake. says: the symptom in the student's numbers and
-    where to look, never the corrected expression. of_code: it is a change of the course's solution, told in its names.
+    where to look, never the corrected expression.
     """
 
     wrong: Callable
     says: str
-    of_code: bool = False
 
 
 def text_of(*functions):
@@ -93,12 +92,6 @@ def mistakes(function):
     return tuple(Mistake(wrong_one(function, changes), says) for says, changes in changes_of(text))
 
 
-def solutions(name, beside):
-    """The texts in NAME.txt beside a module, one below the other with a line of dashes between; () where none is."""
-    path = Path(beside).with_name(f"{name}.txt")
-    return tuple(path.read_text(encoding="utf-8").strip().split("\n----\n")) if path.exists() else ()
-
-
 def picked(function, result):
     """A function that gives one of several results of another."""
     return lambda *case: function(*case)[result]
@@ -112,7 +105,7 @@ class Task:
     arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
-    routes: other solutions, as text; rights: functions of several results that are right as well;
+    rights: functions of several results that are right as well;
     parts: names of what stands beside each other in the answer.
     results: names, where several things are returned: each is graded by itself; `tolerance` and `same` may be tuples
     then, one for each.
@@ -132,7 +125,6 @@ class Task:
     cases: Callable | None = None
     leans_on: tuple = ()
     slips: tuple = ()
-    routes: tuple = ()
     rights: tuple = ()
     parts: tuple = ()
     results: tuple = ()
@@ -200,7 +192,7 @@ def task_of(right, *, helpers=(), **options):
     helpers: functions that it calls and a student has to write along; options: what else a Task has.
     """
     name, file = right.__name__, inspect.getfile(right)
-    options = {"slips": mistakes(right), "routes": solutions(f"{name}.routes", file)} | words(name, file) | options
+    options = {"slips": mistakes(right)} | words(name, file) | options
     return Task(name=name, right=right, loan=text_of(*helpers, right), **options)
 
 
@@ -210,6 +202,18 @@ def words(name, beside):
     hints = tuple(hint.replace("\n", " ") for hint in text["hints"].split("\n\n"))
     test = text["test"] + "\n" if "test" in text else ""
     return {"asks": text["returns"].replace("\n", " "), "hints": hints, "test": test}
+
+
+def notebook_tasks(beside, **asked):
+    """Tasks of functions that stay in their notebook: {name: Task}; NAME=(right, cases, what it returns, options).
+
+    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module, each below its name.
+    """
+    texts = sections("notebook_functions", beside)
+    return {
+        name: Task(name, asks, right, loan=texts[name], cases=cases, **options)
+        for name, (right, cases, asks, options) in asked.items()
+    }
 
 
 def _agrees(returned, expected, same, tolerance):

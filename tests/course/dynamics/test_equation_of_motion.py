@@ -6,7 +6,7 @@ import solutions
 from cells import cell
 
 from ir50p_lab.course import check, my_robot
-from ir50p_lab.course.dynamics import fallbacks, lump_view
+from ir50p_lab.course.dynamics import lump_view
 from ir50p_lab.course.dynamics.functions.velocity_torque import made_up_mass
 from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.robot.catalogue import task
@@ -36,23 +36,6 @@ def test_what_stands_in_is_the_courses_equation(arm):
         np.testing.assert_allclose(held, gravity(arm, q), atol=1e-9)
         asked = task("velocity_torque").right(q, qd, lambda q: mass_matrix(arm, q))
         np.testing.assert_allclose(asked, coriolis_matrix(arm, q, qd) @ qd, atol=1e-8)
-
-
-@ARMS
-def test_newton_of_a_lump_is_the_rule(arm):
-    l, mass = np.array(arm.l), arm.m[2]
-
-    def place(q):
-        T = frames(q, l)
-        return T[2][:3, 3] + arm.lc[2] * T[3][:3, 0]
-
-    def slopes(q):
-        return np.array([(place(q + step) - place(q - step)) / 2e-4 for step in 1e-4 * np.eye(3)]).T
-
-    rule = task("velocity_torque").right
-    for q, qd in states(10):
-        by_newton = fallbacks.lump_torque(place, l, mass)(q, qd)
-        np.testing.assert_allclose(by_newton, rule(q, qd, lambda q: mass * slopes(q).T @ slopes(q)), atol=1e-4)
 
 
 def test_the_made_up_mass_is_that_of_some_arm():

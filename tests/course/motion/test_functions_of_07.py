@@ -6,7 +6,7 @@ from told import told
 
 from ir50p_lab.course import my_robot, parts
 from ir50p_lab.course.motion import friction_views as views
-from ir50p_lab.modelling import IR50P, forward_dynamics
+from ir50p_lab.modelling import IR50P
 
 DRY = "dry = fc + (fs - fc) * np.exp(-((qd / qs) ** 2))"
 SUM = "return fv * qd + np.sign(qd) * dry + offset"
@@ -33,14 +33,6 @@ def test_right_ones_of_another_shape_are_kept(name, old, new, capsys):
     assert "right, and yours" in told(capsys, name, old, new)
 
 
-def test_counts_for_is_the_equation_turned_round():
-    q, qd, qdd = np.random.default_rng(1).uniform(-1, 1, (3, 3))
-    own = parts(IR50P)
-    motor = my_robot.motor_torque(views.counts_for(IR50P)(q, qd, qdd), qd, own.gain, own.damping)
-    torque = motor - my_robot.friction_torque(qd, *own[5:10])
-    np.testing.assert_allclose(forward_dynamics(IR50P.without_friction(), q, qd, torque), qdd, atol=1e-9)
-
-
 @pytest.mark.parametrize("wires", ["cut", "joined"])
 @pytest.mark.parametrize("speed", [0.03, -0.5])
 def test_the_spring_balance_shows_friction_and_brake(speed, wires):
@@ -49,7 +41,3 @@ def test_the_spring_balance_shows_friction_and_brake(speed, wires):
         wires == "joined"
     )
     assert views.dragged(IR50P, speed, wires=wires) == pytest.approx(law, abs=1e-6)
-
-
-def test_dry_friction_takes_no_more_speed_than_there_is():
-    assert [views.slide(speed, 0.2) for speed in (0.5, -0.5, 0.1, 0.0)] == pytest.approx([0.3, -0.3, 0, 0])
