@@ -18,7 +18,7 @@ _TABLE = """
 08 loops         PID
 09 loops         step_metrics
 10 at_the_bench  fit_line low_pass
-12 fitting       regressor least_squares rls_step
+12 fitting       least_squares regressor rls_step
 13 fitting       fit_percent
 14 torque        computed_torque
 15 torque        adaptive_step
