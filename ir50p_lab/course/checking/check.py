@@ -8,11 +8,12 @@ import timeit
 from ir50p_lab.course import lab_book
 from ir50p_lab.course.checking.cell import CannotTake, has_dots, is_copy, take
 from ir50p_lab.course.checking.grade import grade
+from ir50p_lab.course.checking.in_notebook import check_here
 from ir50p_lab.course.checking.note import Note, ended, show
 from ir50p_lab.course.checking.numbers import check_number
 from ir50p_lab.course.lab_book.progress import record
 from ir50p_lab.course.robot import student_package as folder
-from ir50p_lab.course.robot.catalogue import ORDER, is_function, work_on
+from ir50p_lab.course.robot.catalogue import ORDER, is_function, stays, work_on
 from ir50p_lab.errors import InputError
 
 _BEFORE_SCRAMBLE, _BEFORE_LOAN = 3, 6  # different failing sources
@@ -23,8 +24,11 @@ def check(name, answer=...):
 
     name: of a function ("rot_z"), a stage of a class ("PID.p") or a number exercise ("start-1").
     answer: the function or class itself, or the number.
-    Shows a sentence and returns None; raises nothing, whatever the answer does.
+    Shows a sentence and returns None; raises nothing, whatever the answer does. Of a function that stays in its
+    notebook it returns the one to go on with: the student's if it is right, else the course's.
     """
+    if stays(str(name)):
+        return check_here(name, answer)
     if not is_function(str(name)):
         return check_number(name, answer)
     try:

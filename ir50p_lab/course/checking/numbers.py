@@ -24,7 +24,7 @@ import numpy as np
 from ir50p_lab.course.checking.note import Note, show
 from ir50p_lab.course.lab_book.progress import record
 from ir50p_lab.course.lab_book.student_file import LabBookError
-from ir50p_lab.course.robot.catalogue import ORDER, is_function, task
+from ir50p_lab.course.robot.catalogue import ORDER, is_function, of_notebook, stays, task
 from ir50p_lab.errors import InputError
 
 _COMMON = {  # slips that are known without being told, of any unit ("") and of one
@@ -112,8 +112,10 @@ def solution(name):
 
     name: of a number exercise ("pose-3"): its number, or an array (a copy). Of a function of `my_robot` ("rot_z"), or
     of a stage of one ("PID.p"): the text of a right one, without checks of its arguments; `my_robot` itself has it as
-    a function. Raises InputError for an unknown name, and for a function that is still to come.
+    a function. Of a function that stays in its notebook: its lines, in the names of that notebook. Raises InputError for an unknown name, and for a function that is still to come.
     """
+    if stays(str(name)):
+        return of_notebook(name).loan
     return task(name).loan if is_function(str(name)) else find(name).right.copy()[()]
 
 

@@ -212,6 +212,18 @@ def words(name, beside):
     return {"asks": text["returns"].replace("\n", " "), "hints": hints, "test": test}
 
 
+def notebook_tasks(beside, **asked):
+    """Tasks of functions that stay in their notebook: {name: Task}; NAME=(right, cases, what it returns, options).
+
+    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module.
+    """
+    texts = dict(zip(asked, solutions("notebook_functions", beside), strict=True))
+    return {
+        name: Task(name, asks, right, loan=texts[name], cases=cases, **options)
+        for name, (right, cases, asks, options) in asked.items()
+    }
+
+
 def _agrees(returned, expected, same, tolerance):
     if same is not None:
         return same(returned, expected)

@@ -14,7 +14,7 @@ class ClaimError(AssertionError):
     """A claim of the text that does not hold for these numbers; the message is the sentence, its value and limit."""
 
 
-def claim(text, value, *, below=None, above=None, near=None, within=None, unit=""):
+def claim(text, value, *, below=None, above=None, near=None, within=None, unit="", by=""):
     """Print what is claimed, its value and its limit; raise the same sentence where it does not hold.
 
         claim("the shoulder sinks", fell, above=0.1)
@@ -42,9 +42,12 @@ def claim(text, value, *, below=None, above=None, near=None, within=None, unit="
     room = np.stack(np.broadcast_arrays(*room))
     sentence = f"{text}: {f'{_words(value)} {unit}'.strip()} ({' and '.join(said)})"
     _log(text, room)
+    if by not in ("", "yours"):
+        print(f"{by}, not claimed: {sentence}")
+        return
     if not (room > 0).all():  # nan is no room either
         raise ClaimError(f"does not hold: {sentence}")
-    print(f"✓ {sentence}")
+    print(f"{'✓' if by else 'it holds:'} {sentence}")
 
 
 def _words(number):

@@ -59,8 +59,11 @@ def predict(name, guess, unit="", *more, within=0.1, choices=()):
     print(f"{name}: {change(edit)}")
 
 
-def measured(name, value, unit=""):
+def measured(name, value, unit="", by=""):
     """Show what came out beside what was guessed, and write it down. unit: where nothing was predicted.
+
+    by: whose function made the value, as `badge_of` and `my_robot.whose` tell it: what is not "yours" is not written
+    down; "": a fact of the course.
 
     Where the guess is off by more than its prediction allows, and no reason is written down yet, it asks for one.
     """
@@ -68,6 +71,9 @@ def measured(name, value, unit=""):
         value = float(value)
     except (TypeError, ValueError):
         raise LabBookError(f"{name}: what is measured is one number, got {value!r:.60}") from None
+    if by not in ("", "yours"):
+        print(f"{name}: {_say(value, unit)} ({by}: not written down)")
+        return
 
     def edit(book):
         entry = book["predictions"].setdefault(name, {})

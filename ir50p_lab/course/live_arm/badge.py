@@ -5,7 +5,7 @@ import textwrap
 
 from ir50p_lab.course.checking.cell import has_dots
 from ir50p_lab.course.robot import my_robot
-from ir50p_lab.course.robot.catalogue import ORDER
+from ir50p_lab.course.robot.catalogue import ORDER, stays
 
 _WEAKEST_FIRST = ("not written yet", "the course's", "on loan", "yours")
 
@@ -39,7 +39,7 @@ def _of_function(function, seen):
     if package == "my_robot":
         yield my_robot.whose(function.__name__)
         return
-    if package == "ir50p_lab" and function.__qualname__ in ORDER:
+    if package == "ir50p_lab" and (function.__qualname__ in ORDER or stays(function.__qualname__)):
         yield "the course's"
         return
     if package != "ir50p_lab":

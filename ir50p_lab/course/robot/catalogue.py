@@ -31,6 +31,11 @@ NOTEBOOKS = {number: tuple(names) for number, _, *names in _ROWS}
 _ROOMS = {name: room for _, room, *names in _ROWS for name in names}
 ORDER = tuple(_ROOMS)
 STAGES = {"PID": ("PID.p", "PID.pi", "PID.limits")}  # checked on the way; "PID" itself is the last
+_HERE = {  # functions that stay in their notebook, and the room in which the course's stand
+    **dict.fromkeys(("along", "pace", "push"), "kinematics"),
+    **dict.fromkeys(("centres", "heaviness", "shoulder_holds", "lump_torque", "torque", "acceleration"), "dynamics"),
+    **dict.fromkeys(("falling", "halve", "slide", "motor_factors", "counts_for"), "motion"),
+}
 _at = {}  # stage of each function that this session works on
 
 
@@ -47,6 +52,16 @@ def notebook_of(name):
 def is_function(name):
     """Tell whether a name is a function of `my_robot`, or a stage of one."""
     return name in ORDER or name in STAGES.get(function_of(name), ())
+
+
+def stays(name):
+    """Tell whether a name is that of a function that stays in its notebook."""
+    return name in _HERE
+
+
+def of_notebook(name):
+    """The Task of a function that stays in its notebook."""
+    return importlib.import_module(f"ir50p_lab.course.{_HERE[name]}.notebook_functions").TASKS[name]
 
 
 @cache

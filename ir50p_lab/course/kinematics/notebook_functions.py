@@ -1,0 +1,95 @@
+"""Functions of 02 and 03 that stay in their notebook: the course's, what each is tried on, typical slips."""
+
+import numpy as np
+
+from ir50p_lab.course.checking.task import Mistake, notebook_tasks
+from ir50p_lab.course.kinematics.functions.frames import frames
+from ir50p_lab.course.kinematics.functions.jacobian import jacobian
+from ir50p_lab.course.kinematics.functions.reach import reach
+from ir50p_lab.modelling import load_arm
+
+
+def along(places, q_start):
+    """The poses (3,) rad of a line, one for each place (3,) m, None where there is none."""
+    arm = load_arm()
+    limits = np.clip([arm.q_min, arm.q_max], -np.pi, np.pi)
+    q_now, way = q_start, []
+    for p in places:
+        pose = reach(p, np.array(arm.l), q_now, limits)
+        way.append(pose)
+        q_now = q_now if pose is None else pose
+    return way
+
+
+def pace(q, direction, l, fastest):
+    """Greatest tip speed (m/s) along direction, no joint above fastest (rad/s); 0 where the direction is shut.
+
+    At a singular pose: that of the joint speeds of least length, which is safe and not always the greatest.
+    """
+    Jv = _of_tip(q, l)
+    qd = np.linalg.lstsq(Jv, direction, rcond=1e-9)[0]
+    if not np.allclose(Jv @ qd, direction, atol=1e-6):
+        return 0.0
+    return fastest / np.max(np.abs(qd))
+
+
+def push(q, direction, l, strongest):
+    """Greatest force (N) of the tip along direction, no joint above strongest (N m); inf where none has to give any."""
+    torque = np.max(np.abs(_of_tip(q, l).T @ direction))
+    return strongest / torque if torque > 1e-9 else np.inf
+
+
+def _of_tip(q, l):
+    T = frames(q, l)
+    return jacobian(T, 3, T[3][:3, 3])[:3]
+
+
+def _lines():
+    start = np.array([0, 0.8, -0.8])
+    ends = ([0.25, 0.30, 0.10], [0.15, -0.30, 0.30]), ([0.25, 0.20, 0.10], [0.45, -0.20, 0.30])
+    return [(np.linspace(*end, 21), start) for end in ends]
+
+
+def _same_way(one, other):
+    missing = [pose is None for pose in other]
+    if [pose is None for pose in one] != missing:
+        return False
+    return all(pose is None or np.allclose(pose, right, atol=1e-6) for pose, right in zip(one, other, strict=True))
+
+
+def _ways():
+    rng = np.random.default_rng(31)
+    poses = rng.uniform([-1, 0.2, -1.8], [1, 1.2, -0.6], (6, 3))
+    ways = rng.normal(size=(6, 3))
+    lengths = rng.uniform(0.2, 0.4, (6, 3))
+    return [(q, way / np.linalg.norm(way), l, 1.3) for q, way, l in zip(poses, ways, lengths, strict=True)]
+
+
+def _pushes():
+    stretched = np.zeros(3), np.array([1.0, 0, 0]), np.array([0.3, 0.2, 0.4]), 2.0  # nothing limits it
+    return [*_ways(), stretched]
+
+
+def _all_at_full_speed(q, direction, l, fastest):
+    return fastest * np.sum(np.abs(direction @ _of_tip(q, l)))
+
+
+def _of_length(q, direction, l, fastest):
+    return fastest / np.linalg.norm(np.linalg.solve(_of_tip(q, l), direction))
+
+
+def _torques_added(q, direction, l, strongest):
+    return strongest / np.sum(np.abs(_of_tip(q, l).T @ direction))
+
+
+_FULL = "all joints at full speed carry the tip another way: which joint speeds does this way ask for?"
+_LENGTH = "the length of all joint speeds is limited in it: asked is that none of the three is too fast"
+_SUM = "the torques are added up: each motor has a limit of its own"
+
+TASKS = notebook_tasks(
+    __file__,
+    along=(along, _lines, "a list: for each place its pose, or None", {"same": _same_way}),
+    pace=(pace, _ways, "the greatest speed of the tip that way, m/s",
+          {"slips": (Mistake(_all_at_full_speed, _FULL), Mistake(_of_length, _LENGTH))}),
+    push=(push, _pushes, "the greatest force of the tip that way, N", {"slips": (Mistake(_torques_added, _SUM),)}),
+)  # fmt: skip
