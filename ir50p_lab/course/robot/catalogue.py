@@ -35,6 +35,7 @@ _HERE = {  # functions that stay in their notebook, and the room in which the co
     **dict.fromkeys(("along", "pace", "push"), "kinematics"),
     **dict.fromkeys(("centres", "heaviness", "shoulder_holds", "lump_torque", "torque", "acceleration"), "dynamics"),
     **dict.fromkeys(("falling", "halve", "slide", "motor_factors", "counts_for"), "motion"),
+    **dict.fromkeys(("carry", "cancel", "model", "pushes", "into", "planned"), "torque"),
 }
 _at = {}  # stage of each function that this session works on
 
