@@ -25,6 +25,7 @@ def students_folder(tmp_path_factory):
 
 def pytest_addoption(parser):
     parser.addoption("--quick", action="store_true", help="without notebooks, the emulated board, and what takes long")
+    parser.addoption("--both-ways", action="store_true", help="notebooks with their dots, and with solutions")
     parser.addoption("--timing", choices=("only", "without"), help="only tests that measure time, or all others")
 
 
@@ -62,6 +63,12 @@ def pytest_sessionfinish(session):
         and session.exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
     ):
         session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+def pytest_runtest_logreport(report):
+    """Name a notebook when it is done: a run of all tests takes minutes."""
+    if report.when == "call" and "notebook" in report.keywords and not os.environ.get("PYTEST_XDIST_WORKER"):
+        print(f"\n{report.nodeid.rpartition('::')[2]} {report.outcome} after {report.duration:.0f} s", flush=True)
 
 
 def pytest_terminal_summary(terminalreporter, config):

@@ -21,7 +21,7 @@ PARALLEL = ("-n", str(os.cpu_count() + 1), "--dist", "worksteal")  # one more th
 ROOT = Path(__file__).parents[1]
 STATE = ROOT / ".everywhere"
 READ = ("ir50p_lab", "tests", "notebooks", "data", "pyproject.toml", "environment-test.txt")
-ONCE = ("-k", "not in_a_chain")  # each notebook once: what it hands on does not depend on the processor
+ONCE = ("--both-ways", "-k", "not in_a_chain")  # each notebook once: what it hands on does not depend on the processor
 SOURCES = {".py", ".ipynb", ".js", ".ino", ".h", ".toml", ".txt", ".csv", ".json", ".npz", ".jpg", ".png"}
 
 

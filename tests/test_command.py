@@ -31,15 +31,14 @@ def test_what_measures_time_runs_alone_after_the_rest(started):
     assert everywhere.PARALLEL[0] == "-n" and int(everywhere.PARALLEL[1]) > 1
 
 
-def test_covered_lines_of_both_runs_count(started):
-    command.main(["--cov=ir50p_lab"])
-    assert [run[-1] for run in started.commands] == ["--cov=ir50p_lab", "--cov-append"]
-
-
-@pytest.mark.parametrize(("codes", "code"), [((0, 5), 0), ((5, 1), 1), ((1, 0), 1), ((5, 5), 5)])
-def test_exit_code(started, codes, code):
+@pytest.mark.parametrize(
+    ("codes", "code"), [((0, 5), 0), ((5, 1, 1), 1), ((0, 1, 0), 0), ((1, 0), 1), ((1, 1, 0), 1), ((5, 5), 5)]
+)
+def test_exit_code_and_a_second_try_for_what_measures_time(started, codes, code):
     started.codes = codes
     assert command.main([]) == code
+    assert len(started.commands) == len(codes)
+    assert ("--last-failed" in started.commands[-1]) == (len(codes) == 3)
 
 
 def test_marked_files_exist():

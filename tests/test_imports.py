@@ -24,7 +24,7 @@ def test_package_itself_brings_nothing():
 
 def test_modelling_brings_no_heavy_module_until_used():
     heavy = {"numpy", "numba", "scipy", "sympy", "matplotlib", "cv2", "control"}
-    assert not modules_after("import ir50p_lab.modelling") & heavy
+    assert not modules_after("import ir50p_lab.modelling, ir50p_lab.vision") & heavy
     assert not modules_after("from ir50p_lab.modelling import IR50P, inverse_kinematics") & (heavy - {"numpy"})
 
 

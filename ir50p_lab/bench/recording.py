@@ -31,8 +31,10 @@ class Recording:
 
     NaN where something is not known. Arrays are read-only. Attributes: header, dict of str (arm, bench, date,
     calibration, gains...); path: its file or None; events: what was changed in the middle of the run,
-    [(t in s, text), ...].
+    [(t in s, text), ...]; truth: of a simulated run that has just ended its Truth, else None: no file keeps it.
     """
+
+    truth = None
 
     def __init__(self, table, header=None, *, path=None, events=()):
         """table: (n, 15) array as `recording_file.COLUMNS`, or the growing array('d') of a Recorder."""

@@ -75,7 +75,9 @@ class SimulatedBench(Bench):
         calibration: default the nominal one, from which the unit differs a little, as a real one does; period: s, whole
         milliseconds; record_to: folder for recordings, or False for none on disk.
 
-    Attributes: plant: the SimulatedArm; truth: Truth of the last run, for tests and for plots that say so.
+    Attributes: plant: the SimulatedArm; truth: Truth of the last run, also of the drive to rest; a recording has
+    its own. For tests and for plots that say so.
+
     Raises: ArmError without actuators, InputError for a period or q0 that is not possible.
     """
 
@@ -136,6 +138,11 @@ class SimulatedBench(Bench):
 
     def _close(self):
         self.plant.advance(np.zeros(JOINTS), _SINK)
+
+    def _end_run(self):
+        if self._run is not None and self._run.recorder is not None and self._truth:
+            self.recording.truth = self.truth  # the drive to rest is a run of its own
+        super()._end_run()
 
     def _header(self):
         noise = {} if self.plant.noise_seed is None else {"noise_seed": str(self.plant.noise_seed)}

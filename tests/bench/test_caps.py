@@ -72,6 +72,7 @@ def test_the_way_to_rest_keeps_pwm_and_speed_and_may_leave_the_workspace(bench_w
     assert max(max(map(abs, command.pwm)) for _, command in bench._given.commands) <= 100
 
 
+@pytest.mark.timing
 def test_the_loop_in_the_background_is_bound_too(bench_with):
     bench = bench_with(TABLE)
     run = bench.start(type("Strong", (), {"step": lambda self, *_: np.full(3, 250.0)})())

@@ -114,14 +114,6 @@ def test_a_board_that_answers_is_taken(computer, said, name):
     assert line.endswith("; for the simulated arm: connect('simulated') or IR50P_BENCH=simulated)")
 
 
-def test_the_line_about_the_boot_loader_is_wiped_out(computer, capsys):
-    computer({"/dev/ttyACM0": (MEGA, board())})
-    connect().abort()
-    waiting, line = capsys.readouterr().out.split("\r")
-    assert waiting == "/dev/ttyACM0: the board restarts, its boot loader takes 2 s"
-    assert len(line) > len(waiting)
-
-
 @pytest.mark.parametrize(
     ("first", "words"),
     [
@@ -160,18 +152,6 @@ def test_a_port(computer, said):
     computer({"COM1": (MEGA, board()), "COM5": (None, board())})
     assert connect("COM5").port == "COM5"
     assert "(asked for by " in said()
-
-
-def test_the_argument_wins_over_the_variable(computer, said, monkeypatch):
-    monkeypatch.setenv("IR50P_BENCH", "COM5")
-    assert isinstance(connect("simulated"), SimulatedBench)
-    assert "connect('simulated')" in said()
-
-
-def test_an_empty_variable_says_nothing(said, monkeypatch):
-    monkeypatch.setenv("IR50P_BENCH", " ")
-    connect()
-    assert "no Arduino Mega found" in said()
 
 
 def test_what_is_asked_for_and_fails_raises(computer, capsys):

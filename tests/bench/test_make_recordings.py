@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from data.make_recordings import RECORDINGS, main
 from ir50p_lab.bench.recording import Recording
-from tests.support.make_recordings import RECORDINGS, main
 
 DATA = Path(__file__).parents[2] / "data"
-AGAIN = "run `python -m tests.support.make_recordings` and look at the plots before you commit them"
+AGAIN = "run `python -m data.make_recordings` and look at the plots before you commit them"
 
 
 @pytest.fixture(scope="module")

@@ -159,6 +159,7 @@ def test_the_recording_says_when_and_how_hard(tmp_path):
 # ---- in the background
 
 
+@pytest.mark.timing
 @pytest.mark.parametrize("controller", [Own(), PID(**P, limit_pwm=255)], ids=["own", "compiled"])
 def test_a_controller_in_the_background_is_pushed(controller):
     with SimulatedBench(IR50P, q0=POSE, realtime=True, record_to=False) as bench:
@@ -182,6 +183,7 @@ def test_a_controller_in_the_background_is_pushed(controller):
         assert run.most_push == 0
 
 
+@pytest.mark.timing
 def test_only_a_simulated_arm_is_pushed_from_here(tmp_path):
     with FileBench(str(tmp_path / "commands.txt"), record_to=False) as bench:
         run = bench.start(PID(**P, limit_pwm=255), None)

@@ -146,15 +146,6 @@ def test_another_device(board, bytes_sent):
     assert board.closed
 
 
-def test_device_that_floods_the_wire(board):
-    noise = np.random.default_rng(1).bytes(1_000_000)
-    board.on_command = lambda n, data: board.say(noise[5000 * n :][:5000]) or b""
-    begun = board.t
-    with pytest.raises(BoardError, match="no firmware of ours"):
-        bench_of(board).open()
-    assert board.t - begun < 1.5 * serial_bench.HANDSHAKE
-
-
 @pytest.mark.parametrize(
     ("identity", "expected"),
     [
@@ -279,7 +270,7 @@ def test_noise_never_becomes_a_sample(board):
     assert bench.statistics.bad_replies > 1000
 
 
-@pytest.mark.parametrize("late", np.arange(500, 540, 2) / 10_000)
+@pytest.mark.parametrize("late", np.arange(500, 540, 5) / 10_000)
 def test_an_answer_still_on_its_way_when_a_run_begins_is_no_damaged_one(board, late):
     """A busy computer asks again at the hello; the second answer comes byte by byte, with bytes like a frame's first."""
     byte = 10 / protocol.BAUD
@@ -325,18 +316,6 @@ def test_slow_answers_are_those_of_the_present_cycle(board, after):
     assert begun > 0
 
 
-def test_a_single_late_answer_is_dropped(board):
-    normal = board.answer_after
-
-    def late(n, data):
-        board.answer_after = 0.02 if n == 21 else normal
-        return data
-
-    board.on_answer = late
-    samples, _ = run(board, pwm=(100, 0, 0))
-    assert np.abs(np.diff([s.q[0] for s in samples])[2:] - 0.004).max() < 2.5 / CALIBRATION.slope[0]
-
-
 # ---- late cycles
 
 
@@ -354,19 +333,6 @@ def test_late_cycles_are_counted_never_raised(board):
     assert t[11] - t[10] > 0.035
     assert np.diff(t).min() > 0.003  # never in a rush to catch up
     np.testing.assert_allclose(np.diff(t[12:]), 0.01, atol=1e-3)
-
-
-def test_a_pause_beyond_the_watchdog_cuts_and_is_counted(board):
-    bench = bench_of(board).open()
-    for k, _ in enumerate(bench.run(0.8)):
-        bench.drive((50, 0, 0))
-        if k == 10:
-            before = board.q[0]
-            board.sleep(0.4)
-            assert (board.pwm == 0).all()
-            assert board.q[0] - before < 50 * 0.004 * 0.11
-    assert board.trips == bench.statistics.watchdog_trips == 1
-    assert board.pwm[0] == 50  # the next command drives again
 
 
 # ---- the board is lost

@@ -55,6 +55,13 @@ def test_compiled_and_python_loop_agree_to_the_last_bit(arm, delay):
     np.testing.assert_array_equal(*(in_python(bench, pid(), TARGET, 0.5).q for bench in benches))
 
 
+def test_a_recording_keeps_its_truth_when_the_arm_drives_to_rest(tmp_path):
+    with SimulatedBench(IR50P, record_to=tmp_path) as bench:
+        recording = bench.follow(pid(), TARGET, 0.5)
+    assert len(recording.truth.q) == len(recording) and np.abs(recording.truth.q - recording.q).max() < 0.1
+    assert len(bench.truth.q) > len(recording)
+
+
 def test_simulated_stands_everywhere(bench):
     recording = bench.follow(pid(), TARGET, 0.1)
     assert bench.simulated and "simulated" in bench.name
@@ -172,12 +179,6 @@ def test_realtime_keeps_the_pace_of_the_clock_without_drift():
     assert clock.now() == pytest.approx(1999 * 0.01, abs=0.003)
     assert sample.missed == 4 and len(t) == 1996  # of the 50 ms: left out, not caught up
     assert sample.t == 1999 * 0.01
-
-
-def test_realtime_holds_for_follow():
-    bench, clock = on_a_clock()
-    assert len(bench.follow(pid(), TARGET, 5)) == 500
-    assert clock.now() == pytest.approx(4.99, abs=0.001)
 
 
 def test_pot_errors_of_a_unit_show_in_the_angles_and_a_calibration_takes_them_out():

@@ -46,16 +46,12 @@ def test_twenty_views_are_all_drawn_and_share_one_context(views):
     assert figures["views"] == 20 and figures["lost"] is False
 
 
-def test_layers_are_named_with_their_colours_and_the_place_of_the_tip_can_be_hidden(views):
+def test_layers_are_named_with_their_colours(views):
     box = views.locator(".la").first
-    assert box.locator(".la-tip").is_visible() and "tip at x" in box.get_by_role("img").first.get_attribute(
-        "aria-label"
-    )
-    box.locator("summary").click()
-    box.get_by_label("place of the tip").uncheck()
-    assert not box.locator(".la-tip").is_visible()
-    assert "tip at x" not in box.get_by_role("img").first.get_attribute("aria-label")
+    assert box.locator(".la-tip").is_visible()
+    assert "tip at x" in box.get_by_role("img").first.get_attribute("aria-label")
     assert box.locator(".la-legend i").count() == 0
+    box.locator("summary").click()
     box.get_by_label("velocity ellipsoid").check()
     box.get_by_label("frames").check()
     assert box.locator(".la-legend").nth(1).text_content() == "velocity ellipsoidxyz"

@@ -11,7 +11,7 @@ from test_a_student import run
 from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL, VIEW, show
 
 THE_VIEW = VIEW.format(0)
-MIDDLE_OF_LINK_2 = "view.joints[1].map((v, i) => (v + view.joints[2][i]) / 2)"
+MIDDLE_OF_LINK_2 = "view.scene.joints[1].map((v, i) => (v + view.scene.joints[2][i]) / 2)"
 EVENTS = 3  # number of the cell that prints those of the recording
 
 
@@ -26,26 +26,28 @@ def pushed(browser, tmp_path_factory):
         page.goto(address.format("push.ipynb"), wait_until="commit")
         page.wait_for_function(KERNEL_IDLE, timeout=90_000)
         page.evaluate(RUN_ALL)
-        page.wait_for_function(f"() => document.querySelector('.la')?.liveArm && {THE_VIEW}.mostPush", timeout=120_000)
+        page.wait_for_function(
+            f"() => document.querySelector('.la')?.liveArm && {THE_VIEW}.hand.mostPush", timeout=120_000
+        )
         show(page, 0)
         yield page
         context.close()
 
 
 def tip(page):
-    return np.array(page.evaluate(f"() => {THE_VIEW}.tipAt"))
+    return np.array(page.evaluate(f"() => {THE_VIEW}.scene.tipAt"))
 
 
 def place(page, point):
     """Where a point of the base is on the page."""
-    return page.evaluate(f"() => {{ const view = {THE_VIEW}; return view.onPage({point}); }}")
+    return page.evaluate(f"() => {{ const view = {THE_VIEW}; return view.scene.onPage({point}); }}")
 
 
 def arrow(page):
     """Length of the arrow that is drawn, m; None without one."""
     return page.evaluate(
-        f"() => {{ const {{ head, hand, robot }} = {THE_VIEW}; return head.visible ? head.position.distanceTo("
-        "hand.point.clone().applyMatrix4(robot.links[hand.link].matrix)) : null; }"
+        f"() => {{ const {{ hand, scene }} = {THE_VIEW}, {{ head, grip }} = hand; return head.visible ? head.position.distanceTo("
+        "grip.point.clone().applyMatrix4(scene.robot.links[grip.link].matrix)) : null; }"
     )
 
 
@@ -56,7 +58,7 @@ def words(page, link):
 
 
 def rises(page, before, metres):
-    page.wait_for_function(f"(z) => {THE_VIEW}.tipAt[2] > z", arg=before[2] + metres, timeout=60_000)
+    page.wait_for_function(f"(z) => {THE_VIEW}.scene.tipAt[2] > z", arg=before[2] + metres, timeout=60_000)
 
 
 def has_let_go(page):
@@ -64,7 +66,7 @@ def has_let_go(page):
 
 
 def mouse_pushes_the_tip_with_ten_newtons_at_most(pushed):
-    before, (x, y) = tip(pushed), place(pushed, "view.tipAt")
+    before, (x, y) = tip(pushed), place(pushed, "view.scene.tipAt")
     pushed.mouse.move(x, y)
     pushed.mouse.down()
     pushed.mouse.move(x, y - 20, steps=4)
@@ -75,7 +77,7 @@ def mouse_pushes_the_tip_with_ten_newtons_at_most(pushed):
     rises(pushed, before, 0.1)  # P leaves 266 mm; held still for longer than a push lasts
     pushed.mouse.up()
     has_let_go(pushed)
-    pushed.wait_for_function(f"(z) => {THE_VIEW}.tipAt[2] < z", arg=before[2] + 0.05, timeout=60_000)
+    pushed.wait_for_function(f"(z) => {THE_VIEW}.scene.tipAt[2] < z", arg=before[2] + 0.05, timeout=60_000)
 
 
 def shift_and_arrows_push_the_tip_newton_by_newton(pushed):
@@ -105,7 +107,9 @@ def recording_says_it(pushed):
     assert "a hand pushes at link 3 with 10.0 N" in said and "a hand pushes at link 2" in said
     assert "the hand has let go" in said
     run(pushed, EVENTS, "run.stop()")
-    pushed.wait_for_function(f"() => !{THE_VIEW}.mostPush && !{THE_VIEW}.isLive", timeout=60_000)  # played from now on
+    pushed.wait_for_function(
+        f"() => !{THE_VIEW}.hand.mostPush && !{THE_VIEW}.player.isLive", timeout=60_000
+    )  # played from now on
 
 
 def test_a_hand_pushes(pushed):

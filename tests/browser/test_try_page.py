@@ -30,13 +30,16 @@ def test_it_turns_drags_and_plays_with_the_network_off_and_nothing_plays_by_itse
     page.goto(PAGE.as_uri())
     page.wait_for_function("() => document.querySelectorAll('.la').length === 5", timeout=60_000)
     views = "[...document.querySelectorAll('.la')].map((box) => box.liveArm)"
-    assert not any(page.evaluate(f"() => {views}.map((view) => Boolean(view.playing))"))
+    assert not any(page.evaluate(f"() => {views}.map((view) => Boolean(view.player.playing))"))
     page.get_by_label("play or pause").nth(2).click()
-    page.wait_for_function(f"() => {views}[3].time > 0.2 || {views}[2].time > 0.2")
+    page.wait_for_function(f"() => {views}[3].player.time > 0.2 || {views}[2].player.time > 0.2")
     second = page.locator(".la").nth(1)
     second.scroll_into_view_if_needed()
-    page.wait_for_function(f"() => {views}[1].width > 0 && {views}[1].seen")
-    at, before = page.evaluate(f"() => {views}[1].onPage({views}[1].tipAt)"), page.evaluate(f"() => {views}[1].q")
+    page.wait_for_function(f"() => {views}[1].scene.width > 0 && {views}[1].scene.seen")
+    at, before = (
+        page.evaluate(f"() => {views}[1].scene.onPage({views}[1].scene.tipAt)"),
+        page.evaluate(f"() => {views}[1].q"),
+    )
     page.mouse.move(*at)
     page.mouse.down()
     for k in range(1, 6):

@@ -130,12 +130,6 @@ def test_what_a_record_cannot_tell_is_said():
     assert "time constant is not identifiable" in said(sudden) and math.isinf(sudden.T_stderr)
 
 
-def test_a_dead_time_at_the_bound_of_its_search_has_no_error():
-    found = fit_fopdt(T_S, STEP, lag(SINCE, 0.5))
-    assert "at a bound: L = " in said(found) and math.isinf(found.L_stderr) and math.isfinite(found.T_stderr)
-    assert "at a bound" not in said(fit_fopdt(T_S, STEP, lag(SINCE - 0.1, 0.5) + noise(0, 0.01)))
-
-
 def test_milliseconds_and_outliers_are_named():
     y = 2 * lag(SINCE - 0.1, 0.3) + noise(0, 0.01)
     plain = fit_fopdt(T_S, STEP, y)

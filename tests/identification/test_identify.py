@@ -5,6 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from data.make_excitations import (
+    NOISE,
+    SETTINGS,
+    make_excitations,
+    save_excitations,
+    simulate_identification,
+)
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.errors import IdentificationError, InputError
@@ -13,13 +20,6 @@ from ir50p_lab.identification import fit, identify, load_excitations, process, r
 from ir50p_lab.identification.excitation import regressor_condition
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals.fourier import heights
-from tests.support.make_excitations import (
-    NOISE,
-    SETTINGS,
-    make_excitations,
-    save_excitations,
-    simulate_identification,
-)
 
 MOTIONS = load_excitations()
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import Arm
 from ir50p_lab.modelling.friction import Friction
@@ -83,13 +83,6 @@ def good():
 
 def spoilt(record, **changes):
     return SimpleNamespace(**{**vars(record), **changes})
-
-
-def test_nan_and_time_going_backwards_are_refused(good):
-    with pytest.raises(InputError, match="q holds nan"):
-        identify(spoilt(good, q=np.where(good.t[:, None] == good.t[77], np.nan, good.q)))
-    with pytest.raises(InputError, match="backwards or stands still"):
-        identify(spoilt(good, t=np.r_[good.t[:500], good.t[500:] - 0.004]))
 
 
 def test_a_constant_joint_is_refused(good):

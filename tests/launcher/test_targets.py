@@ -32,22 +32,6 @@ def asked(monkeypatch):
     return calls
 
 
-def test_all_without_a_name(asked, capsys):
-    assert targets.main([]) == 0
-    assert asked == [("identification",), ("computed_torque",), ("vision",)]
-    assert capsys.readouterr().out.split("\n\n") == [
-        "table of identification", "table of computed_torque", "table of vision\n"
-    ]  # fmt: skip
-
-
-def test_unknown_names_run_nothing(asked, capsys):
-    assert targets.main(["vision", "vison"]) == 2
-    assert asked == []
-    assert (
-        capsys.readouterr().err == "There are no targets 'vison'. There are: identification, computed_torque, vision.\n"
-    )
-
-
 def test_one_missed_target_is_enough(asked):
     assert targets.main(["--missed", "identification"]) == 1
     assert len(asked) == 3

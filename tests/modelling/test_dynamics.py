@@ -38,7 +38,7 @@ def test_reproduces_the_corrected_thesis_models(name, model):
         assert (M == M.T).all() and (M[0, 2], g[0]) == (0, 0)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(6))
 def test_equals_mujoco_on_a_random_arm(seed):
     rng = np.random.default_rng(seed)
     arm = random_arm(rng)

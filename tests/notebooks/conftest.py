@@ -2,7 +2,7 @@
 
 import pytest
 import stripped
-from notebook_runner import CHAIN, NOTEBOOKS
+from notebook_runner import CHAIN, NOTEBOOKS, REWRITTEN
 
 
 @pytest.fixture(params=NOTEBOOKS, ids=lambda path: path.stem)
@@ -19,8 +19,13 @@ def notebook(path):
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config, items):
-    """A notebook of the chain is not run a second time beside it: a home of its own it has where the chain is left out."""
-    if any(item.name == "test_notebooks_in_a_chain" for item in items):
-        double = [item for item in items if item.name in {f"test_notebook[{path.stem}]" for path in CHAIN}]
-        config.hook.pytest_deselected(items=double)
-        items[:] = [item for item in items if item not in double]
+    """Each notebook runs once: in the chain, or with solutions, or else as it is. `--both-ways`: with solutions, too."""
+    names = {item.name for item in items}
+    double = set()
+    if "test_notebooks_in_a_chain" in names:  # a home of its own it has where the chain is left out
+        double |= {f"test_notebook[{path.stem}]" for path in CHAIN}
+    if not config.option.both_ways:
+        solved = {number for number in REWRITTEN if f"test_notebook_with_solutions[{number}]" in names}
+        double |= {f"test_notebook[{path.stem}]" for path in NOTEBOOKS if path.name[:2] in solved}
+    config.hook.pytest_deselected(items=[item for item in items if item.name in double])
+    items[:] = [item for item in items if item.name not in double]

@@ -1,7 +1,7 @@
 """Where each numbered equation, table and figure of the thesis is taught: `docs/index_of_equations.md`.
 
 `python tests/notebooks/index_of_equations.py` writes it anew, from `docs/thesis_contents.csv` (what the thesis has, which
-notebook is its home, why it is left out there on purpose), the texts of the notebooks, and the docstrings of package and tests. A mention that disappears
+notebook is its home, why it is left out there on purpose), the texts of the notebooks, and the docstrings of the package. A mention that disappears
 changes the file, and a test says so.
 """
 
@@ -64,33 +64,26 @@ def notebook_mentions():
 
 
 @cache
-def docstring_mentions(folder):
-    """{tag: [place]} from the docstrings below a folder: of functions for the package, of files for tests."""
+def docstring_mentions():
+    """{tag: [function]} from the docstrings of the package."""
     found = {}
-    for path in sorted((ROOT / folder).rglob("*.py")):
+    for path in sorted((ROOT / "ir50p_lab").rglob("*.py")):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         for node in [tree, *ast.walk(tree)]:
             if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
                 name = getattr(node, "name", path.stem)
                 for tag in tags(ast.get_docstring(node) or ""):
-                    found.setdefault(tag, []).append(name if folder == "ir50p_lab" else path.stem)
+                    found.setdefault(tag, []).append(name)
     return found
 
 
 def rows():
-    """(thesis, what, home, reason, notebooks, functions, tests) for each row of the contents."""
-    in_notebooks, in_package, in_tests = (
-        notebook_mentions(),
-        docstring_mentions("ir50p_lab"),
-        docstring_mentions("tests"),
-    )
+    """(thesis, what, home, reason, notebooks, functions) for each row of the contents."""
+    mentions = notebook_mentions(), docstring_mentions()
     with (ROOT / "docs" / "thesis_contents.csv").open(encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):
             wanted = tags(row["thesis"] + " ")
-            places = [
-                sorted({p for tag in wanted for p in found.get(tag, [])})
-                for found in (in_notebooks, in_package, in_tests)
-            ]
+            places = [sorted({place for tag in wanted for place in found.get(tag, [])}) for found in mentions]
             yield row["thesis"], row["what"], row["home"], row["left_out_because"], *places
 
 
@@ -102,8 +95,8 @@ def text():
         "Made by `python tests/notebooks/index_of_equations.py` from the texts of the notebooks and the docstrings. *Home* is the",
         "notebook in which it belongs; a number without a notebook yet is one to come.",
         "",
-        "| thesis | what | home | notebook and section | functions | tests |",
-        "|---|---|---|---|---|---|",
+        "| thesis | what | home | notebook and section | functions |",
+        "|---|---|---|---|---|",
     ]
     for thesis, what, home, reason, *places in rows():
         shown = [", ".join(place[:8]) for place in places]

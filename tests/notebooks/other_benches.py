@@ -81,7 +81,7 @@ def test_on_the_board(name, tmp_path):
 def test_a_student_drives_the_board_and_pulls_its_cable(tmp_path):
     """The circle without its radius in the speed, then rightly; driven; then the cable goes, and is put back."""
     notebook = stripped.read(DRIVING["11_bench_drive"])
-    last = next(k for k, cell in enumerate(notebook.cells) if cell.source.startswith("## 7"))
+    last = next(k for k, cell in enumerate(notebook.cells) if cell.source.startswith("## 8"))
     sources = [cell.source for cell in notebook.cells[:last] if cell.cell_type == "code"]
     (asked,) = [k for k, source in enumerate(sources) if source.startswith("def circle")]
     sources[asked : asked + 1] = [

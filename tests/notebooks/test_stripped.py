@@ -38,12 +38,6 @@ def test_what_somebody_wrote_stays(stored):
     assert stripped.strip(stored).cells[-1].source == "a note of mine"
 
 
-def test_another_version_of_python_is_nothing(stored):
-    stored = stripped.strip(stored)
-    stored.metadata.language_info.version = "3.14.2"
-    assert stripped.left_out(stored) == ""
-
-
 def test_each_notebook_with_something_has_its_sentence(stored, tmp_path, monkeypatch):
     monkeypatch.setattr(stripped, "FOLDER", tmp_path)
     nbformat.write(stripped.read(NOTEBOOKS[1]), tmp_path / "01.ipynb")

@@ -38,7 +38,10 @@ def test_there_are_notebooks():
 
 
 CLAIM = re.compile(r"^\s*(?:assert |claim\()", re.M)
-SHOWS = re.compile(r"^(?:print|predict|measured|claim|check|live|note|keep|Image)\(|^    print\(|\.progress\(\)", re.M)
+SHOWS = re.compile(
+    r"^(?:print|predict|measured|claim|check|live|note|keep|Image)\(|^    print\(|\.progress\(\)|^[\w, ]+ = check\(",
+    re.M,
+)
 
 
 def short_cells(path, notebook):

@@ -7,12 +7,12 @@ TESTS = Path(__file__).parents[1]
 MARKS = {
     "timing": (
         "benchmarks/test_bench_speed.py",
-        "benchmarks/test_serial_speed.py",
         "bench/test_background.py",
         "bench/test_background_board.py",
         "bench/test_real_time.py",
         "bench/test_stopped_process.py",
         "course/at_the_bench/test_bench_panel.py",
+        "vision/test_vision_times.py",
     ),
     "emulator": (
         "bench/test_background_board.py",
@@ -21,7 +21,6 @@ MARKS = {
         "bench/test_firmware_noise.py",
         "bench/test_real_time.py",
         "bench/test_stopped_process.py",
-        "benchmarks/test_serial_speed.py",
     ),
     "slow": (
         "benchmarks",

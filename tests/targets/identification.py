@@ -20,6 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: more threa
 import numpy as np
 from tqdm.auto import tqdm
 
+from data.make_excitations import SETTINGS
 from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.identification import (
@@ -33,7 +34,6 @@ from ir50p_lab.identification import (
     validate,
 )
 from ir50p_lab.modelling import IR50P
-from tests.support.make_excitations import SETTINGS
 from tests.targets.rows import Row, table
 
 TRIAL = np.array([65, 70, 77])
@@ -98,7 +98,7 @@ def honesty(seeds, arm):
         found = identify(known)
         fitted = np.isfinite(found.stderr) & (found.stderr > 0)
         z.append(((found.theta - IR50P.theta_pwm) / found.stderr)[fitted])
-    return np.mean(np.abs(z) < 3)
+    return np.mean(np.abs(np.concatenate(z)) < 3)
 
 
 def rows(seeds=20, *, first=100, quick=False):

@@ -173,8 +173,7 @@ def fisheye(focal=280, bends=(0, 0, 0, 0), noise=0.1, seed=0):
 BENDS = [(0,), (-1 / 24, 1 / 1920), (1 / 12, 1 / 120), (-1 / 6, 1 / 120), (-0.05, 0.01)]
 
 
-@pytest.mark.parametrize("focal", [150, 220, 300])
-@pytest.mark.parametrize("bends", BENDS)
+@pytest.mark.parametrize(("bends", "focal"), list(zip(BENDS, [150, 220, 300, 150, 300], strict=True)))
 def test_a_fisheye_is_called_one_with_its_angle_and_no_other_cause(bends, focal):
     views, angle = fisheye(focal, [*bends, 0, 0, 0][:4], seed=focal)
     (said,) = calibrate_corners(POINTS, views, SIZE).warnings
@@ -205,8 +204,9 @@ def wide(lens, across_deg, seed=0):
     return f, views
 
 
-@pytest.mark.parametrize("across_deg", [70, 85, 100])
-@pytest.mark.parametrize("lens", [(-0.3, 0.1, 0, 0, 0), (-0.35, 0.15, 0, 0, 0), (-0.4, 0.15, 0, 0, 0)])
+@pytest.mark.parametrize(
+    ("across_deg", "lens"), [(70, (-0.3, 0.1, 0, 0, 0)), (85, (-0.35, 0.15, 0, 0, 0)), (100, (-0.4, 0.15, 0, 0, 0))]
+)
 def test_a_wide_lens_that_the_model_describes_is_no_fisheye(lens, across_deg):
     f, seen = wide(lens, across_deg)
     found = calibrate_corners(POINTS, seen, SIZE)

@@ -1,8 +1,6 @@
 """Pictures: what is refused and in which words; back and forth through files of all kinds that users have."""
 
 import struct
-import subprocess
-import sys
 from pathlib import Path
 
 import cv2
@@ -166,9 +164,3 @@ def test_folder_in_order_of_its_numbers(tmp_path, picture):
     (tmp_path / "sub").mkdir()
     with pytest.raises(ImageError, match="holds no picture"):
         list_images(tmp_path / "sub")
-
-
-def test_importing_the_package_costs_nothing():
-    code = "import ir50p_lab.vision, sys; print(' '.join(sys.modules))"
-    loaded = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
-    assert not {"cv2", "numpy", "scipy", "matplotlib"} & set(loaded)

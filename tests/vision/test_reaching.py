@@ -373,6 +373,7 @@ def test_a_real_arm_does_not_reach_for_a_rendered_ball():
         assert np.abs(bench.plant.q_true - before).max() < 0.05
 
 
+@pytest.mark.timing
 def test_the_loop_goes_on_while_the_eye_looks():
     bench, _, locator = rig()
     bench.realtime, quick = True, locator.look

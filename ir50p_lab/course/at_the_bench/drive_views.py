@@ -13,6 +13,7 @@ from ir50p_lab.course.lab_book.results import arm_that_answers
 from ir50p_lab.course.robot import my_robot
 from ir50p_lab.course.robot.parts import parts
 from ir50p_lab.errors import BenchError, BoardLostError, InputError
+from ir50p_lab.modelling.named_arms import load_arm
 
 _COLOURS = COLOURS["blue"], COLOURS["orange"], COLOURS["green"]
 
@@ -58,6 +59,64 @@ def _no_angles(circle, lap, place):
     return "" if np.array_equal(given, given[::-1]) else "the same t twice gives two answers: it remembers"
 
 
+def go(controller, reference, seconds):
+    """The loop of notebook 08, on a real arm with the student's calibration. Returns: Recording."""
+    with arm_that_answers("calibration", q0=rest_pose(load_arm())) as bench:
+        next(bench.run(seconds=0.02, record=False))  # where is it?
+        bench.go_to_rest()
+        controller.reset()  # what it remembers of another run would push at once
+        for sample in bench.run(seconds=seconds, reference=reference):
+            bench.drive(controller.step(sample.t, sample.q, sample.reference))
+    return bench.recording
+
+
+_STARTS = 0.5 + 1.2 * np.arange(8)  # s, of the pushes
+
+
+def eight_pushes(bench):
+    """Eight pushes of 200 counts at the waist, 0.4 s each, to and fro, whatever the angles. Returns: Recording."""
+    for sample in bench.run(seconds=10.1, note="first motion"):
+        since = sample.t - _STARTS
+        now = np.flatnonzero((since > -0.001) & (since < 0.399))  # which push, if any
+        bench.drive([200 * (-1) ** now[0] if now.size else 0, 0, 0])
+    return bench.recording
+
+
+def mean_push(first_motion):
+    """How the waist moves when it is pushed: s since the push (50,), the mean way of `eight_pushes` (50,) rad."""
+    rows = np.searchsorted(first_motion.t, _STARTS - 0.001)
+    waist, push = first_motion.q[:, 0], first_motion.u[:, 0]
+    moves = [np.sign(push[k]) * (waist[k - 10 : k + 40] - np.mean(waist[k - 40 : k])) for k in rows]
+    return 0.01 * np.arange(-10, 40), np.mean(moves, axis=0)
+
+
+def three_parts(centre, tip, wanted):
+    """How far tips (n, 3) m are from where they should be on a level circle: (n, 3) mm, outwards, behind, upwards."""
+    out = (wanted - centre) / np.linalg.norm(wanted - centre, axis=1, keepdims=True)
+    left = np.cross([0, 0, 1], out)
+    sense = np.sign(np.sum(left[:-1] * np.diff(wanted, axis=0)))  # which way round it goes
+    off = 1000 * (tip - wanted)
+    return np.column_stack([np.sum(off * out, axis=1), -sense * np.sum(off * left, axis=1), off[:, 2]])
+
+
+def once_round_in_use(once_round, K, T, late):
+    """The student's once_round(kp, w), or the course's while it gives no two numbers, or others; a line says which."""
+
+    def course(kp, w):
+        return kp * K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T) + w * late)
+
+    try:
+        mine = array_like(np.zeros(2), once_round, 700, 8.0)
+    except Failed as failed:
+        says = "it gives no size and degrees yet" if "ellipsis" in failed.args[0] else failed.args[0]
+        print(f"once_round: the course's. Of yours: {says}")
+        return course
+    same = np.allclose(mine, course(700, 8.0))
+    theirs = np.round(course(700, 8.0), 3)
+    print("once_round: yours" if same else f"once_round: the course's. Of yours: 700 at 8 rad/s {mine}, not {theirs}")
+    return once_round if same else course
+
+
 class Filtered:
     """The student's low pass of notebook 10 between the potentiometers and a controller, sample by sample."""
 
@@ -76,17 +135,24 @@ class Filtered:
         return self.controller.step(t, self._seen, reference)
 
 
-def circle_figure(centre, radius, recording, **tips):
-    """The way of the tip from above, and its height over time: LabFigure. tips: label -> (n, 3) m, at the end of t."""
-    figure, above, height = subplots(9.6, 4.0, cols=2, width_ratios=(1, 1.3), note=origin(recording))
+def circle_figure(centre, radius, recording, wanted, **tips):
+    """The way of the tip from above, its height, and how far behind it is: LabFigure.
+
+    Args: wanted: (n, 3) m, places of the tip at the end of the recording's t; tips: label -> (n, 3) m.
+    """
+    figure, above, height, behind = subplots(9.6, 3.6, cols=3, note=origin(recording))
     turned = np.linspace(0, 2 * np.pi, 200)
     above.plot(centre[0] + radius * np.cos(turned), centre[1] + radius * np.sin(turned), label="wanted", **SETPOINT)
     height.axhline(centre[2], **SETPOINT)
+    behind.axhline(0, **SETPOINT)
     for (label, tip), colour in zip(tips.items(), _COLOURS, strict=False):
+        t = recording.t[-len(tip) :]
         above.plot(*tip[:, :2].T, color=colour, lw=1.2, label=label)
-        height.plot(recording.t[-len(tip) :], tip[:, 2], color=colour, lw=1.2)
+        height.plot(t, tip[:, 2], color=colour, lw=1.2)
+        behind.plot(t, three_parts(centre, tip, wanted)[:, 1], color=colour, lw=1.2)
     above.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", title="From above")
-    height.set(xlabel="time [s]", ylabel="height of the tip [m]")
+    height.set(xlabel="time [s]", ylabel="height [m]", title="How high")
+    behind.set(xlabel="time [s]", ylabel="behind [mm]", title="How far behind")
     above.legend(fontsize=8)
     return figure
 

@@ -1,25 +1,36 @@
 """Notebook 10: the hand that holds a simulated arm at a protractor, and what a line makes of its readings."""
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 
 from ir50p_lab.bench import UNIT, SimulatedArm, connect
 from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, SETPOINT, subplots
 
+_HANDS = count()  # a hand that reads again reads with other errors
+_RULER = np.random.default_rng(0)
+
 
 def moved_by_hand(arm, poses):
     """Hold a simulated arm about each of the poses (n, 3) rad, within some degrees; its table is taken away.
 
+    Read again, it scatters anew.
     Returns: angles (n, 3) rad as a protractor shows them, to half a degree; counts (n, 3), means of half a second.
     """
     held, angles, counts = SimulatedArm(arm, replace(UNIT, table=-9.0)), [], []
+    held.noise(4000 * next(_HANDS))
     for pose in poses:
         q = np.clip(pose + np.radians(2 * held.noise(1)[0]), arm.q_min, arm.q_max)
         held.place(q)
         angles.append(np.radians(np.rint(2 * np.degrees(q)) / 2))
         counts.append(np.mean([held.counts() for _ in range(50)], axis=0))
     return np.array(angles), np.array(counts)
+
+
+def by_ruler(tip):
+    """Where a simulated ruler sees a tip (3,) m: in whole mm, and 1 mm (rms) off in each direction."""
+    return np.round(tip + _RULER.normal(0, 0.001, 3), 3)
 
 
 def counts_by_hand():

@@ -112,7 +112,8 @@ def solution(name):
 
     name: of a number exercise ("pose-3"): its number, or an array (a copy). Of a function of `my_robot` ("rot_z"), or
     of a stage of one ("PID.p"): the text of a right one, without checks of its arguments; `my_robot` itself has it as
-    a function. Of a function that stays in its notebook: its lines, in the names of that notebook. Raises InputError for an unknown name, and for a function that is still to come.
+    a function. Of a function that stays in its notebook: its lines, in the names of that notebook. Raises InputError
+    for an unknown name, and for a function that is still to come.
     """
     if stays(str(name)):
         return of_notebook(name).loan

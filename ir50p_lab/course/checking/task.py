@@ -93,12 +93,6 @@ def mistakes(function):
     return tuple(Mistake(wrong_one(function, changes), says) for says, changes in changes_of(text))
 
 
-def solutions(name, beside):
-    """The texts in NAME.txt beside a module, one below the other with a line of dashes between; () where none is."""
-    path = Path(beside).with_name(f"{name}.txt")
-    return tuple(path.read_text(encoding="utf-8").strip().split("\n----\n")) if path.exists() else ()
-
-
 def picked(function, result):
     """A function that gives one of several results of another."""
     return lambda *case: function(*case)[result]
@@ -200,7 +194,7 @@ def task_of(right, *, helpers=(), **options):
     helpers: functions that it calls and a student has to write along; options: what else a Task has.
     """
     name, file = right.__name__, inspect.getfile(right)
-    options = {"slips": mistakes(right), "routes": solutions(f"{name}.routes", file)} | words(name, file) | options
+    options = {"slips": mistakes(right)} | words(name, file) | options
     return Task(name=name, right=right, loan=text_of(*helpers, right), **options)
 
 
@@ -215,9 +209,9 @@ def words(name, beside):
 def notebook_tasks(beside, **asked):
     """Tasks of functions that stay in their notebook: {name: Task}; NAME=(right, cases, what it returns, options).
 
-    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module.
+    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module, each below its name.
     """
-    texts = dict(zip(asked, solutions("notebook_functions", beside), strict=True))
+    texts = sections("notebook_functions", beside)
     return {
         name: Task(name, asks, right, loan=texts[name], cases=cases, **options)
         for name, (right, cases, asks, options) in asked.items()

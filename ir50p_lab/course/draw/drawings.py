@@ -1,4 +1,4 @@
-"""Drawings that never change: SVG files in `data/drawings`, made by tests/support/make_drawings.py."""
+"""Drawings that never change: SVG files in `data/drawings`, made by data/make_drawings.py."""
 
 import base64
 import re

@@ -1,7 +1,4 @@
-"""Pictures of notebook 04: centres of the links, what the joints have to move, kilograms by direction.
-
-And what stands in for a function of the notebook, `heaviness`, that no check keeps.
-"""
+"""Pictures of notebook 04: centres of the links, what the joints have to move, kilograms by direction."""
 
 from types import SimpleNamespace
 
@@ -9,7 +6,6 @@ import numpy as np
 
 from ir50p_lab.course.draw.arm3d import SideView
 from ir50p_lab.course.draw.style import COLOURS, subplots
-from ir50p_lab.modelling.differential import jacobian
 from ir50p_lab.modelling.dynamics import mass_matrix
 
 
@@ -55,7 +51,7 @@ def centres(arm, q, places):
     for link, place in enumerate(zip(radius, places[:, 2], strict=True), start=1):
         plane.annotate(str(link), place, ha="center", va="center", color="white", fontweight="bold", zorder=7)
     plane.set(xlim=(-0.35 * arm.reach, None), ylim=(-0.1 * arm.reach, arm.l[0] + 0.6 * arm.reach))
-    plane.set_title("Your centres of links 1, 2 and 3")
+    plane.set_title("Centres of links 1, 2 and 3, as written")
     return figure
 
 
@@ -78,16 +74,6 @@ def kilograms(arm, q, angles, masses):
     ax.set(aspect="equal", xlabel="outwards [kg]", ylabel="upwards [kg]", title="The farther out, the heavier")
     ax.legend()
     return figure
-
-
-def heaviness(arm, q, direction):
-    """How heavy the tip is along a unit vector, pushed that way and free to slip aside, kg; inf where nothing starts.
-
-    1 / (d^T J M^-1 J^T d)
-    """
-    force = jacobian(arm, q)[:3].T @ direction
-    start = force @ np.linalg.solve(mass_matrix(arm, q), force)
-    return 1 / start if start > 1e-12 else np.inf
 
 
 def motion(way, step):

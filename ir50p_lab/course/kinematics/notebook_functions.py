@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, notebook_tasks
+from ir50p_lab.course.checking.calling import guarded
+from ir50p_lab.course.checking.task import Failed, Mistake, notebook_tasks
 from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.kinematics.functions.jacobian import jacobian
 from ir50p_lab.course.kinematics.functions.reach import reach
@@ -44,17 +45,17 @@ def _of_tip(q, l):
     return jacobian(T, 3, T[3][:3, 3])[:3]
 
 
-def _lines():
-    start = np.array([0, 0.8, -0.8])
-    ends = ([0.25, 0.30, 0.10], [0.15, -0.30, 0.30]), ([0.25, 0.20, 0.10], [0.45, -0.20, 0.30])
-    return [(np.linspace(*end, 21), start) for end in ends]
-
-
-def _same_way(one, other):
-    missing = [pose is None for pose in other]
-    if [pose is None for pose in one] != missing:
-        return False
-    return all(pose is None or np.allclose(pose, right, atol=1e-6) for pose, right in zip(one, other, strict=True))
+def _walked(function):
+    """Try a loop along two lines; raises Failed where a place has no answer, or another one."""
+    for ends in ([0.25, 0.30, 0.10], [0.15, -0.30, 0.30]), ([0.25, 0.20, 0.10], [0.45, -0.20, 0.30]):
+        places, start = np.linspace(*ends, 21), np.array([0, 0.8, -0.8])
+        way = guarded(lambda places=places, start=start: list(function(places, start)))
+        if len(way) != len(places):
+            raise Failed(f"{len(way)} answers for {len(places)} places: each place has one, None too", "")
+        for number, (pose, right) in enumerate(zip(way, along(places, start), strict=True), start=1):
+            if (pose is None) != (right is None) or (pose is not None and not np.allclose(pose, right, atol=1e-6)):
+                raise Failed(f"place {number} of {len(places)} has another pose: where does the arm stand by then?", "")
+    return ""
 
 
 def _ways():
@@ -88,7 +89,7 @@ _SUM = "the torques are added up: each motor has a limit of its own"
 
 TASKS = notebook_tasks(
     __file__,
-    along=(along, _lines, "a list: for each place its pose, or None", {"same": _same_way}),
+    along=(along, None, "a list: for each place its pose, or None", {"tried": _walked}),
     pace=(pace, _ways, "the greatest speed of the tip that way, m/s",
           {"slips": (Mistake(_all_at_full_speed, _FULL), Mistake(_of_length, _LENGTH))}),
     push=(push, _pushes, "the greatest force of the tip that way, N", {"slips": (Mistake(_torques_added, _SUM),)}),

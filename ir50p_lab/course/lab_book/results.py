@@ -178,10 +178,8 @@ def _own_model(theta, errors):
 
 
 def _write_model(model, path):
-    fields = {one.name: getattr(model, one.name) for one in dataclasses.fields(model)}
-    fields["residuals"] = np.round(model.residuals, 4)
-    listed = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in fields.items()}
-    path.write_text(json.dumps(listed), encoding="utf-8")
+    fields = dataclasses.asdict(model) | {"residuals": np.round(model.residuals, 4)}
+    path.write_text(json.dumps(fields, default=np.ndarray.tolist), encoding="utf-8")
 
 
 def _read(found):

@@ -51,9 +51,9 @@ class LiveArm(anywidget.AnyWidget):
         on_drag: f(p, q_now) -> q or None, moves the arm when its tip is dragged to p (3,) m; None: inverse kinematics
         in the browser. frames: f(q) -> (4, 4, 4), transforms of frames 0 to 3 to the base: the arm is drawn by them,
         wrong ones too. badge: whose code moves the arm, 'yours' or "the course's"; by default told from them.
-        layers: which of table, shadow, ghost, trail, frames, joint axes, velocity ellipsoid, force ellipsoid,
-        workspace, ball are shown at first. ball: (p, radius) m.
-        height: CSS pixels; sliders: of the joints; readout: where the tip is, in numbers (the menu has a switch too).
+        layers: which of table, shadow, trail, frames, joint axes, velocity ellipsoid, force ellipsoid, ball are shown
+        at first. ball: (p, radius) m. height: CSS pixels; sliders: of the joints.
+        in_space: without table, stops and set point, for motions that know none of them.
 
     Attributes: q, list of rad, in both directions; layers.
     `play(run)` shows a motion. Raises InputError for what cannot be drawn. Where `frames` gives none, a
@@ -71,8 +71,8 @@ class LiveArm(anywidget.AnyWidget):
     description = traitlets.Unicode().tag(sync=True)
 
     def __init__(self, arm, q=(0.0, 0.0, 0.0), *, on_drag=None, frames=None, badge=None,
-                 layers=("table", "shadow", "ghost", "trail"), ball=None,
-                 height=420, sliders=True, readout=True):  # fmt: skip
+                 layers=("table", "shadow", "trail"), ball=None,
+                 height=420, sliders=True, in_space=False):  # fmt: skip
         self.arm, self._on_drag, self._frames = arm, on_drag, frames
         self._stop = threading.Event()
         ball = None if ball is None else (vectors3("ball", ball[0], unit="m"), float(ball[1]))
@@ -83,29 +83,29 @@ class LiveArm(anywidget.AnyWidget):
             "drag": "browser" if on_drag is None else "kernel",
             "height": height,
             "sliders": sliders,
-            "readout": readout,
+            "in_space": in_space,
             "ball": ball,
         }
         super().__init__(
             bundle=Bundle.get(),
             options=json.loads(json.dumps(options, default=lambda array: array.tolist())),
             q=vectors3("q", q).tolist(),
-            layers=[*layers, *(["ball"] if ball else [])],
+            layers=[name for name in layers if not in_space or name == "trail"] + ["ball"] * bool(ball),
         )
         if frames is not None:
             self._begin()
         self.on_msg(self._heard)
 
-    def play(self, *runs, labels=None, speed=1.0, loop=False):
+    def play(self, *runs, labels=None, speed=1.0):
         """Show a motion, or two side by side, with a bar to play, pause and scrub, and curves over time.
 
         Args: runs: SimulationResult, Recording, anything with t and q; or one open Bench or LiveRun, which is
         followed 25 times a second until it ends and can then be played. labels: a name for each run; speed: times
-        real time; loop: again and again.
+        real time.
         Returns: the view. Raises InputError for runs that cannot be shown.
         """
         self._stop.set()
-        self.options = self.options | {"speed": speed, "loop": loop}
+        self.options = self.options | {"speed": speed}
         if hasattr(runs[0], "is_open") or hasattr(runs[0], "alive"):
             if IN_BROWSER:
                 needs_more("to follow an open bench needs threads")
@@ -116,7 +116,7 @@ class LiveArm(anywidget.AnyWidget):
         return self
 
     def _show(self, runs, labels):
-        rows, self.shape = pack(runs, labels)
+        rows, self.shape = pack(runs, labels, wanted=not self.options["in_space"])
         self._shown = runs[0]
         self.q = [float(v) for v in runs[0].q[0]]
         self.track = rows
@@ -193,11 +193,11 @@ class LiveArm(anywidget.AnyWidget):
         return f"The arm in 3-D, {badge}: joints at {angles} degrees, tip at x {x:.3f}, y {y:.3f}, z {z:.3f} m{plays}"
 
 
-def pack(runs, labels):
+def pack(runs, labels, *, wanted=True):
     """Rows of one or two runs on a common time, and what stands in their columns.
 
     Args: runs: each with t (n,) s and q (n, 3) rad; optional reference (n, 3) or (n, 3, 3) rad, u (n, 3), unit,
-    simulated (bool). labels: a name for each.
+    simulated (bool). labels: a name for each; wanted: with the set point.
     Returns: bytes of float32 (rows, columns), time first; dict for the browser. Raises InputError for runs that
     cannot be shown.
     """
@@ -211,7 +211,7 @@ def pack(runs, labels):
         place = {"label": label, "reference": None, "u": None}
         held = np.clip(np.searchsorted(time, t + 1e-9, side="right") - 1, 0, len(time) - 1)
         for name in ("q", "reference", "u"):
-            values = getattr(run, name, None)
+            values = None if name == "reference" and not wanted else getattr(run, name, None)
             if values is not None and np.isfinite(values).any():
                 place[name] = len(columns)
                 values = np.reshape(values, (len(time), -1))  # of a reference, angles first

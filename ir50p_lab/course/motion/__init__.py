@@ -5,6 +5,6 @@ from ir50p_lab import lazy
 __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
-        "friction_views": ["counts_for", "dragged", "friction_figure", "seconds_to_lift", "slide"],
+        "friction_views": ["dragged", "friction_figure", "seconds_to_lift"],
     },
 )

@@ -1,4 +1,4 @@
-"""Notebook 07: what drags the waist, its picture, a lift, and what serves until the student's own lines do."""
+"""Notebook 07: what drags the waist, its picture, and a lift."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -8,8 +8,8 @@ import numpy as np
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.course.draw.traces import STAMP
-from ir50p_lab.modelling.dynamics import inverse_dynamics, mass_matrix
-from ir50p_lab.modelling.friction import Friction, friction_torque
+from ir50p_lab.modelling.dynamics import mass_matrix
+from ir50p_lab.modelling.friction import Friction
 from ir50p_lab.signals import trapezoid
 from ir50p_lab.simulation import simulate
 
@@ -58,19 +58,3 @@ def friction_figure(speeds, torques, law=None):
     ax.set(xlabel="speed of the waist [rad/s]", ylabel="torque [N m]")
     ax.legend(loc="upper left")
     return figure
-
-
-def slide(speed, taken):
-    """Speed (rad/s) that dry friction leaves, which can take `taken` of it, and never more than there is."""
-    return np.sign(speed) * max(abs(speed) - taken, 0.0)
-
-
-def counts_for(arm):
-    """Function of q, qd, qdd, (3,) each: the counts (3,) that such a motion takes."""
-    motor = arm.actuators
-
-    def counts(q, qd, qdd):
-        torque = inverse_dynamics(arm.without_friction(), q, qd, qdd) + friction_torque(arm, qd)
-        return (torque + motor.back_emf_damping * qd) / motor.gain
-
-    return counts

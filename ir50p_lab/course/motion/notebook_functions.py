@@ -65,7 +65,8 @@ def _slides():
 
 
 def _motors():
-    return [tuple(row) for row in np.random.default_rng(62).uniform([20, 0.01, 0.01, 1, 6], [90, 0.05, 0.05, 9, 24], (5, 5))]
+    low, high = [20, 0.01, 0.01, 1, 6], [90, 0.05, 0.05, 9, 24]
+    return [tuple(row) for row in np.random.default_rng(62).uniform(low, high, (5, 5))]
 
 
 def _motions():

@@ -15,8 +15,8 @@ from ir50p_lab.home import PROJECT
 PICTURE = PROJECT / "docs" / "arm.gif"
 _FRAMES, _SECONDS, _SIZE, _COLOURS = 60, 5.0, (720, 420), 96
 _VIEW = "document.querySelector('.la').liveArm"
-_SHOW = f"(part) => {{ const view = {_VIEW}; view.seek(part * view.track.end); view.controls.rotateLeft(0.004);"
-_SHOW += " view.controls.update(); view.draw(false); }"
+_SHOW = f"(part) => {{ const {{ player, scene }} = {_VIEW}; player.seek(part * player.track.end);"
+_SHOW += " scene.controls.rotateLeft(0.004); scene.controls.update(); scene.draw(false); }"
 
 
 def main():
@@ -27,8 +27,8 @@ def main():
         browser = driver.chromium.launch(executable_path=find_browser(), args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 768, "height": 900})
         page.goto(PAGE.as_uri())
-        page.wait_for_function(f"() => {_VIEW}?.width > 0", timeout=60_000)
-        page.evaluate(f"() => {{ {_VIEW}.soon = () => {{}}; }}")  # no coarse pictures between
+        page.wait_for_function(f"() => {_VIEW}?.scene.width > 0", timeout=60_000)
+        page.evaluate(f"() => {{ {_VIEW}.scene.soon = () => {{}}; }}")  # no coarse pictures between
         frames = [_frame(page, k / (_FRAMES - 1)) for k in tqdm(range(_FRAMES), desc="frames")]
         browser.close()
     last = [int(1000 * _SECONDS / _FRAMES)] * (_FRAMES - 1) + [2000]  # ms; it rests at its end

@@ -156,6 +156,7 @@ def test_a_fault_ends_the_run_and_the_arm_sinks(fault, error, after):
     assert (turned > 10) == (fault == "motor")
 
 
+@pytest.mark.timing
 def test_a_process_that_stops_is_cut():
     raised, seconds, *_ = broken("process")
     assert isinstance(raised, PauseError) and seconds < 1.5
@@ -176,6 +177,15 @@ def test_the_circle_s_figure_says_where_it_is_from():
         IR50P, my_robot.PID(2000, 2000, 80), lambda t: my_robot.quintic(FIRST, FIRST, 1, t), 0.5, q0=FIRST
     )
     tips = np.array([my_robot.forward_kinematics(q, L) for q in run.recording.q])
-    figure = views.circle_figure(CENTRE, RADIUS, run.recording, yours=tips[10:])
+    figure = views.circle_figure(CENTRE, RADIUS, run.recording, tips[10:], yours=tips[10:])
     assert "simulated arm" in " ".join(text.get_text() for text in figure.texts)
     assert np.array_equal(figure.axes[1].lines[1].get_xdata(), run.recording.t[10:])
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_miss_has_three_parts(sense):
+    turned = sense * np.linspace(0, 6, 100)
+    late = turned - sense * 0.1
+    wanted, tip = (CENTRE + RADIUS * np.column_stack([np.cos(a), np.sin(a), 0 * a]) for a in (turned, late))
+    parts_of_it = views.three_parts(CENTRE, tip - [0, 0, 0.002], wanted)
+    np.testing.assert_allclose(parts_of_it, np.tile([-0.3, 5.99, -2], (100, 1)), atol=0.01)

@@ -4,9 +4,9 @@ import re
 
 import pytest
 
+from data.make_drawings import DRAWINGS, main
 from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.home import PROJECT
-from tests.support.make_drawings import DRAWINGS, main
 
 FOLDER = PROJECT / "data" / "drawings"
 SHOWN = {

@@ -203,6 +203,7 @@ def test_the_warning_of_an_unstable_loop_appears_under_the_figure_once():
     assert panel.status.value == "gain 2<br>joint 1 &lt;swings&gt;"
 
 
+@pytest.mark.timing
 def test_a_hundred_changes_from_threads_end_with_the_last_value_drawn():
     drawn = []
     panel = line_panel(lambda height: (time.sleep(0.004), drawn.append(height))[1])

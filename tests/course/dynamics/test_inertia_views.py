@@ -1,14 +1,10 @@
-"""Pictures of notebook 04, and what stands in for `heaviness`."""
-
-from dataclasses import replace
+"""Pictures of notebook 04."""
 
 import numpy as np
 import pytest
 
 from ir50p_lab.course.dynamics import inertia_views as views
-from ir50p_lab.modelling import IR50P, forward_dynamics, jacobian, mass_matrix
-
-SPACE = replace(IR50P.without_friction(), g=0.0)
+from ir50p_lab.modelling import IR50P, mass_matrix
 
 
 def test_inertia_view_shows_the_pose():
@@ -40,15 +36,3 @@ def test_the_heaviest_way_is_drawn_through_the_tip():
     way = plane.lines[-1].get_xydata()
     assert np.arctan2(*(way[1] - way[0])[::-1]) == pytest.approx(0.5, abs=0.02)
     assert np.linalg.norm(ax.lines[0].get_xydata(), axis=1).max() == pytest.approx(5, rel=0.01)
-
-
-@pytest.mark.parametrize("q", [[0.2, 0.5, -1.0], [-1.0, 0.9, 0.4]])
-def test_kilograms_are_newtons_by_the_acceleration_that_way(q):
-    way = np.array([0.6, 0, 0.8])
-    J = jacobian(IR50P, q)[:3]
-    starts = J @ forward_dynamics(SPACE, q, np.zeros(3), J.T @ way)
-    assert views.heaviness(IR50P, q, way) == pytest.approx(1 / (way @ starts))
-
-
-def test_where_nothing_starts_the_tip_is_infinitely_heavy():
-    assert views.heaviness(IR50P, np.zeros(3), np.array([1.0, 0, 0])) == np.inf

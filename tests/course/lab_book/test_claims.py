@@ -22,7 +22,7 @@ def test_a_claim_that_holds_is_said_with_value_and_limit(value, limits, words, r
     log = tmp_path / "claims.jsonl"
     monkeypatch.setenv("IR50P_CLAIMS", str(log))
     claim("it is so", value, **limits)
-    assert capsys.readouterr().out == f"✓ it is so: {words}\n"
+    assert capsys.readouterr().out == f"it holds: it is so: {words}\n"
     (line,) = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
     assert line["claim"] == "it is so"
     np.testing.assert_allclose(line["room"], room, atol=1e-12)

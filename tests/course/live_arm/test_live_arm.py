@@ -166,6 +166,7 @@ def pink(picture):
     return ((r > g + 15) & (b > g + 8)).mean()
 
 
+@pytest.mark.timing
 def test_a_loop_in_the_background_feeds_the_view_and_can_be_played_afterwards(heard, tmp_path, request):
     with SimulatedBench(IR50P, q0=[0, 0.8, -1.2], realtime=True, record_to=tmp_path) as bench:
         live = bench.start(PID(**PID_OF_TABLES), hold([0.4, 0.8, -1.2]))
@@ -183,6 +184,7 @@ def test_a_loop_in_the_background_feeds_the_view_and_can_be_played_afterwards(he
     assert view.shape["source"] == "simulated"
 
 
+@pytest.mark.timing
 def test_after_the_whole_of_a_run_no_window_follows(heard, run):
     """The run ends while a window of it is put together; a window after the whole would stay for good."""
 
@@ -203,6 +205,7 @@ def test_after_the_whole_of_a_run_no_window_follows(heard, run):
     assert "whole" in heard[-1][0]
 
 
+@pytest.mark.timing
 def test_the_browser_is_told_how_hard_it_may_push_and_a_push_reaches_the_arm(heard):
     with SimulatedBench(IR50P, q0=[0, 0.8, -1.2], realtime=True, record_to=False) as bench:
         view = LiveArm(IR50P).play(bench)
@@ -217,6 +220,7 @@ def test_the_browser_is_told_how_hard_it_may_push_and_a_push_reaches_the_arm(hea
     assert any("link = 4" in message.get("error", "") for message, _ in heard)
 
 
+@pytest.mark.timing
 def test_the_loop_of_nine_lines_feeds_the_view(heard, tmp_path):
     pid, target = PID(**PID_OF_TABLES), hold([0.4, 0.8, -1.2])
     with SimulatedBench(IR50P, q0=[0, 0.8, -1.2], realtime=True, record_to=tmp_path) as bench:

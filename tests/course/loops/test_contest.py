@@ -55,11 +55,11 @@ def test_holding_the_command_buys_nothing(samples):
 def test_at_most_one_in_twenty_random_settings_wins():
     rng = np.random.default_rng(11)
     won = 0
-    for _ in range(200):
+    for _ in range(80):
         gains = pid(*(rng.uniform(0, 1, (3, 3)) * HIGHEST[:, None]))
         seeds = rng.permutation(UNITS)[: jury.RUNS]
         won += all(jury.score(gains, [seed], IR50P).won for seed in seeds)  # most lose on the first arm
-    assert won <= 10
+    assert won <= 4
 
 
 def test_figures_of_a_motion_that_is_known():

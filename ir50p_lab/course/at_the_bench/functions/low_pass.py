@@ -49,7 +49,8 @@ def _symptom(case, returned, expected):
     gap, step = x[1:] - y[:-1], np.diff(y)
     shares = step[np.abs(gap) > 1e-6] / gap[np.abs(gap) > 1e-6]
     if len(shares) > 1 and np.ptp(shares) < 1e-6:
-        return _SAYS["share"].format(shares[0], 1 - np.exp(-2 * np.pi * case[1] / case[2]))
+        closed, asked = (f"{share:.3g}" for share in (shares[0], 1 - np.exp(-2 * np.pi * case[1] / case[2])))
+        return _SAYS["share"].format(closed, asked) if closed != asked else ""
     return ""
 
 

@@ -16,10 +16,10 @@ export function showLegend(element, entries) {
 
 const degrees = (rad) => (rad * 180) / Math.PI;
 
-export function layout() {
+export function layout(badge) {
   const parts = {
     canvas: make("canvas", { tabIndex: 0 }, { role: "img" }),
-    badge: make("span", { className: "la-badge" }),
+    badge: make("span", { className: `la-badge${badge === "yours" ? " yours" : ""}`, textContent: badge, title: "whose code moves this arm" }),
     legend: make("span", { className: "la-legend" }),
     keys: make("span", { className: "la-legend" }),
     tip: make("span", { className: "la-tip" }),
@@ -40,6 +40,21 @@ export function layout() {
   return parts;
 }
 
+// Switches of the layers, which keep the set `on`; changed: called after each; clear: of the button.
+export function fillMenu(menu, names, on, clear, changed) {
+  for (const name of names) {
+    const tick = make("input", { type: "checkbox", checked: on.has(name) });
+    tick.addEventListener("change", () => {
+      on[tick.checked ? "add" : "delete"](name);
+      changed();
+    });
+    menu.append(make("label", {}, {}, tick, ` ${name}`));
+  }
+  const button = make("button", { textContent: "clear trail" });
+  button.addEventListener("click", clear);
+  menu.append(button);
+}
+
 // Sliders of the joints in whole degrees; moved(joint, rad). Returns show(q).
 export function jointSliders(bar, limits, moved) {
   const rows = limits.map(([low, high], i) => {
@@ -56,24 +71,21 @@ export function jointSliders(bar, limits, moved) {
   });
 }
 
-// Play, time, speed, loop. orders: {toggle, seek, speed, loop}. Returns show(t, playing, loop).
+// Play, time, speed. orders: {toggle, seek, speed}. Returns show({t, start, end, playing, live, rate}).
 export function playerBar(bar, orders) {
   const button = make("button", { className: "la-play" }, { "aria-label": "play or pause" });
   const scrub = make("input", { type: "range", min: 0, max: 1000, step: 1 }, { "aria-label": "time" });
   const clock = make("span", { className: "la-read" });
   const speed = make("select", {}, { "aria-label": "speed" }, ...[0.1, 0.25, 0.5, 1, 2, 5].map((v) => make("option", { value: v, textContent: `${v}×` })));
-  const loop = make("button", { textContent: "loop" }, { "aria-label": "play again and again" });
-  bar.append(button, make("label", { style: "flex: 4 1 200px" }, {}, scrub, clock), speed, loop);
+  bar.append(button, make("label", { style: "flex: 4 1 200px" }, {}, scrub, clock), speed);
   button.addEventListener("click", orders.toggle);
   scrub.addEventListener("input", () => orders.seek(scrub.value / 1000));
   speed.addEventListener("change", () => orders.speed(+speed.value));
-  loop.addEventListener("click", orders.loop);
-  return ({ t, start, end, playing, live, rate, again }) => {
+  return ({ t, start, end, playing, live, rate }) => {
     button.textContent = playing ? "❚❚" : "▶";
     button.disabled = scrub.disabled = live;
     scrub.value = end > start ? (1000 * (t - start)) / (end - start) : 0;
     clock.textContent = live ? `live, ${t.toFixed(1)} s` : `${t.toFixed(2)} of ${end.toFixed(2)} s`;
     speed.value = rate;
-    loop.setAttribute("aria-pressed", again);
   };
 }

@@ -1,14 +1,14 @@
 // What stands around the arm: light, table, and the layers that can be switched on and off.
 import {
   ArrowHelper, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight, DoubleSide,
-  Float32BufferAttribute, Group, HemisphereLight, LineBasicMaterial, LineDashedMaterial, LineSegments, Matrix4, Mesh,
+  Float32BufferAttribute, Group, HemisphereLight, LineDashedMaterial, LineSegments, Matrix4, Mesh,
   MeshBasicMaterial, MeshPhongMaterial, PolarGridHelper, Scene, SphereGeometry, Sprite, SRGBColorSpace,
   SpriteMaterial, Vector3,
 } from "three";
 import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { jacobian, tip } from "./kinematics.js";
+import { jacobian } from "./kinematics.js";
 import { COLOURS } from "./robot.js";
 
 // What a layer's colours mean.
@@ -16,7 +16,6 @@ export const KEYS = {
   frames: [[COLOURS.x, "x"], [COLOURS.y, "y"], [COLOURS.z, "z"]],
   "velocity ellipsoid": [["#56B4E9", "velocity ellipsoid"]],
   "force ellipsoid": [[COLOURS.target, "force ellipsoid"]],
-  workspace: [["#E69F00", "workspace"]],
 };
 
 export function makeScene(reach) {
@@ -84,27 +83,14 @@ function ellipsoid(colour) {
   return Object.assign(mesh, { matrixAutoUpdate: false });
 }
 
-function thin(points, colour, dashed = false) {
-  const look = dashed ? new LineDashedMaterial({ color: colour, dashSize: 0.02, gapSize: 0.012 }) : new LineBasicMaterial({ color: colour });
-  const line = new LineSegments(new BufferGeometry().setAttribute("position", new Float32BufferAttribute(points.flat(), 3)), look);
-  return dashed ? line.computeLineDistances() : line;
-}
-
-// The reachable part of the plane of the arm: curves with one joint at an end of its travel, or the arm stretched.
-function workspace(l, [, second, third]) {
-  const bends = third[0] < 0 && third[1] > 0 ? [third[0], 0, third[1]] : third, curves = [];
-  const sweep = (from, to, pose) => {
-    const curve = Array.from({ length: 61 }, (_, k) => tip(l, pose(from + ((to - from) * k) / 60)));
-    curves.push(...curve.slice(1).flatMap((point, k) => [curve[k], point]));
-  };
-  bends.forEach((bend) => sweep(...second, (q2) => [0, q2, bend]));
-  second.forEach((q2) => sweep(...third, (bend) => [0, q2, bend]));
-  return thin(curves, KEYS.workspace[0][0]);
+function dashed(points, colour) {
+  const geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(points.flat(), 3));
+  return new LineSegments(geometry, new LineDashedMaterial({ color: colour, dashSize: 0.02, gapSize: 0.012 })).computeLineDistances();
 }
 
 // All layers by name: Object3D each. Only what can be shown is there.
 export class Layers {
-  constructor(scene, { lengths, limits, ball }) {
+  constructor(scene, { lengths, ball }) {
     const reach = lengths[1] + lengths[2];
     this.lengths = lengths;
     const table = new Group(), top = new Mesh(new CircleGeometry(1.12 * reach, 96), new MeshBasicMaterial({ color: "#eef1f4", side: DoubleSide }));
@@ -116,14 +102,13 @@ export class Layers {
       const name = label(`joint ${i}`, COLOURS.dark, 0.07 * reach);
       name.position.z = 0.3 * reach;
       const group = Object.assign(new Group(), { matrixAutoUpdate: false });
-      return group.add(thin([[0, 0, -0.25 * reach], [0, 0, 0.27 * reach]], COLOURS.dark, true), name);
+      return group.add(dashed([[0, 0, -0.25 * reach], [0, 0, 0.27 * reach]], COLOURS.dark), name);
     });
     this.velocity = ellipsoid(KEYS["velocity ellipsoid"][0][0]);
     this.force = ellipsoid(COLOURS.target);
-    this.space = workspace(lengths, limits);
     this.all = {
       table, frames: new Group().add(...this.triads), "joint axes": new Group().add(...this.joints),
-      "velocity ellipsoid": this.velocity, "force ellipsoid": this.force, workspace: this.space,
+      "velocity ellipsoid": this.velocity, "force ellipsoid": this.force,
     };
     if (ball) {
       const [p, radius] = ball;
@@ -141,7 +126,6 @@ export class Layers {
   place(transforms, q) {
     transforms.forEach((matrix, i) => this.triads[i].matrix.copy(matrix));
     this.joints.forEach((group, i) => group.matrix.copy(transforms[i]));
-    this.space.rotation.z = q[0];
     const J = jacobian(this.lengths, q), at = new Vector3().setFromMatrixPosition(transforms[3]);
     const speed = new Matrix4().set(...J.flatMap((row) => [...row, 0]), 0, 0, 0, 1);
     // J carries the ball of unit joint rates onto the velocity ellipsoid, its inverse transpose that of unit torques

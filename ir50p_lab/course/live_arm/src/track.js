@@ -35,8 +35,9 @@ export class Track {
   }
 }
 
-// Where the pose touches what it should not: a stop of a joint, the table.
+// Where the pose touches what it should not: a stop of a joint, the table. limits: null for an arm in space.
 export function contacts(lengths, limits, q) {
+  if (!limits) return { stops: [false, false, false], table: false };
   const stops = q.map((value, i) => value <= limits[i][0] + 0.01 || value >= limits[i][1] - 0.01);
   const elbow = lengths[0] + lengths[1] * Math.sin(q[1]);
   return { stops, table: Math.min(tip(lengths, q)[2], elbow) < 0.003 };

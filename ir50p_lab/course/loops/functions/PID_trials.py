@@ -123,13 +123,9 @@ def _unit(cls):
         raise _failed("unit")
 
 
-def _push(kp):
-    return lambda cls: _run(_make(cls, kp=kp), *_motion(), _SPEED)
-
-
 def _push_symptom(cls, u, expected):
     """What is seen of a push that is not kp times the error, and no known mistake."""
-    if np.allclose(u, _push(100)(cls)):
+    if np.allclose(u, _on_the_move(kp=100)(cls)):
         return _SAYS["kp does nothing"]
     if np.allclose(u - expected, more := (u - expected)[0]):
         return _SAYS["push at the target"].format(shown(more))
@@ -148,19 +144,16 @@ def gains(*names):
     return probe
 
 
+def _on_the_move(speed=_SPEED, **settings):
+    """The commands of a controller with these settings, of any class, while the arm and its target move."""
+    return lambda cls: _run(_make(cls, **settings), *_motion(), speed)
+
+
 def _shared(cls):
     first = _run(_make(cls, kp=10.0, ki=200.0), *_motion())
     one, other = _make(cls, kp=10.0, ki=200.0), _make(cls, kp=20.0, ki=200.0)
     _run(other, *_motion())
     _alike(_run(one, *_motion()), first, "shared")
-
-
-def _memory(cls, kind=np.array):
-    return _run(_make(cls, kp=kind(_KP), ki=kind(_KI), period=_PERIOD), *_motion())
-
-
-def _takes_tuples(cls):
-    _memory(cls, tuple)  # does it stop?
 
 
 def again(forgotten, **settings):
@@ -252,11 +245,15 @@ def _limits_with_d(cls):
 
 
 # ------------------------------------------------------------------------------------------------------- stages
-_PUSH = (_unit, compared("PID.p", _push(50), _push_symptom), compared("PID.p", _push(tuple(_KP)), _push_symptom))
+_PUSH = (
+    _unit,
+    compared("PID.p", _on_the_move(kp=50), _push_symptom),
+    compared("PID.p", _on_the_move(kp=tuple(_KP)), _push_symptom),
+)
 _MEMORY = (
     _shared,
-    compared("PID.pi", _memory, "memory"),
-    _takes_tuples,
+    compared("PID.pi", _on_the_move(0.0, kp=_KP, ki=_KI, period=_PERIOD), "memory"),
+    compared("PID.pi", _on_the_move(0.0, kp=tuple(_KP), ki=tuple(_KI), period=_PERIOD), "memory"),
     again("the integral, or an error it keeps,", ki=200.0),
 )
 _LIMITS = (
@@ -265,8 +262,13 @@ _LIMITS = (
     _windup,
     _joint_by_joint,
 )
-_D_ALONE = compared("PID", _damping, "damping")
-_DAMPING = (_order, _kick, _D_ALONE, _limits_with_d, again("the last angle or the filter's speed", kd=20.0))
+_DAMPING = (
+    _order,
+    _kick,
+    compared("PID", _damping, "damping"),
+    _limits_with_d,
+    again("the last angle or the filter's speed", kd=20.0),
+)
 PROBES = {
     "PID.p": (*_PUSH, gains("kp")),
     "PID.pi": (*_PUSH, *_MEMORY, gains("kp", "ki")),
@@ -277,4 +279,5 @@ PROBES = {
 
 def tried(stage, cls):
     """Try a class by all probes of a stage in order; returns what they remark. Raises Failed."""
-    return " ".join(filter(None, [probe(cls) for probe in PROBES[stage]]))
+    remarks = filter(None, [probe(cls) for probe in PROBES[stage]])
+    return " ".join(dict.fromkeys(remarks))  # each once

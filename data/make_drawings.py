@@ -1,6 +1,6 @@
 """Drawings in `data/drawings/` that never change: block diagrams, a ruler, a lever.
 
-`python -m tests.support.make_drawings` writes the SVG files again.
+`python -m data.make_drawings` writes the SVG files again.
 """
 
 import argparse

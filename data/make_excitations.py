@@ -1,4 +1,4 @@
-"""Make data/excitation_ir50p.json: `python -m tests.support.make_excitations`.
+"""Make data/excitation_ir50p.json: `python -m data.make_excitations`.
 
 Some minutes; one where OPENBLAS_NUM_THREADS=1 is set (small matrices, on which more threads only wait).
 """
@@ -30,8 +30,8 @@ class SimulatedIdentification:
     """What `simulate_identification` found, per joint (3,).
 
     fit: best fit in % of the commands that a model without sticking can reach on such a run; spread: standard deviation
-    of u; q: (n, 3) rad, as it was followed; room: (3,) rad to the nearer joint limit; height: m of elbow or tip over the
-    table, whichever is lower.
+    of u; q: (n, 3) rad, as it was followed; room: (3,) rad to the nearer joint limit; height: m of the
+    lower of elbow and tip over the table.
     """
 
     fit: np.ndarray
@@ -117,5 +117,5 @@ if __name__ == "__main__":
     parser.add_argument("--seed", type=int, default=0, help="of the first candidate")
     parser.add_argument("--out", default=str(DATA))
     given = parser.parse_args()
-    command = "python -m tests.support.make_excitations" + (f" --seed {given.seed}" if given.seed else "")
+    command = "python -m data.make_excitations" + (f" --seed {given.seed}" if given.seed else "")
     save_excitations(given.out, make_excitations(seed=given.seed), made_by=command)

@@ -1,6 +1,6 @@
 """The small recordings in `data/`, for lessons that need the same data on every computer: all simulated.
 
-`python -m tests.support.make_recordings` writes them again; `data/README.md` says what each is for.
+`python -m data.make_recordings` writes them again; `data/README.md` says what each is for.
 """
 
 import argparse
@@ -66,13 +66,13 @@ def _undated(bench):
     """The recording without its date: made again it is the same file."""
     recording = bench.recording
     del recording.header["date"]
-    recording.header["made_by"] = "python -m tests.support.make_recordings"
+    recording.header["made_by"] = "python -m data.make_recordings"
     return recording
 
 
 def main(arguments=None):
     """Write the recordings into the folder of the argument, default `data`."""
-    parser = argparse.ArgumentParser(prog="python -m tests.support.make_recordings", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m data.make_recordings", description=__doc__)
     parser.add_argument("folder", nargs="?", default="data", help="where to (default: data)")
     folder = Path(parser.parse_args(arguments).folder)
     folder.mkdir(parents=True, exist_ok=True)

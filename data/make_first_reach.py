@@ -1,6 +1,6 @@
 """The first thing that notebook 00 shows: a ball is seen, and the simulated arm goes there. Rendered and simulated.
 
-`python -m tests.support.make_first_reach` writes `data/first_reach.csv` and `data/first_reach.jpg` again.
+`python -m data.make_first_reach` writes `data/first_reach.csv` and `data/first_reach.jpg` again.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ def main(target=DATA):
     bench.follow(controller, through([start, start, high, goal, goal], durations=(0.5, 2.5, 1.5, 1.5)), 6)
     recording = bench.recording
     del recording.header["date"]
-    recording.header["made_by"] = "python -m tests.support.make_first_reach"
+    recording.header["made_by"] = "python -m data.make_first_reach"
     recording.save(target / "first_reach.csv")
 
 
