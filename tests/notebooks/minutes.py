@@ -16,7 +16,7 @@ from notebook_runner import FOLDER, REWRITTEN, ROOT
 from ir50p_lab.course.robot.catalogue import function_of, is_function, task
 
 README = ROOT / "README.md"
-PANEL = re.compile(r"^(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
+PANEL = re.compile(r"^(?:\w+\.)?(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
 
 
 def minutes(path):

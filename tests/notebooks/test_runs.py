@@ -17,8 +17,9 @@ def code_of(notebook):
 
 @pytest.mark.notebook
 def test_notebook(path, notebook, tmp_path):
-    """Every cell runs, none complains, every slider moves something."""
-    assert_runs(path, notebook, tmp_path)
+    """Every cell runs, none complains, every slider moves something, and who writes nothing gets no tick."""
+    run = assert_runs(path, notebook, tmp_path)
+    assert "✓" not in "".join(output.get("text", "") for cell in run.cells for output in cell.get("outputs", []))
 
 
 def assert_runs(path, notebook, home):
@@ -30,6 +31,7 @@ def assert_runs(path, notebook, home):
         assert panel["errors"] == []
         assert panel["pushes"] >= 4
         assert panel["pictures"] >= 2, f"nothing moves when {panel['controls']} are pushed"
+    return run
 
 
 @pytest.mark.notebook
