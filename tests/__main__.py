@@ -12,7 +12,7 @@ from tests import everywhere
 
 PYTEST = [sys.executable, "-m", "pytest"]
 FAILED, NOTHING_FOUND = 1, 5  # pytest's exit codes
-MINUTES = 15  # of one processor, all tests; 18 where compiler and browser are there
+MINUTES = 15  # of one processor, without other work beside it; more where compiler and browser are there
 
 
 def main(arguments):

@@ -9,8 +9,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "arm_regressor": ["regressor"],
-        "base": ["BaseParameters", "base_parameters"],
-        "delay": ["DelayEstimate", "estimate_delay"],
         "estimate": ["Estimate"],
         "excitation": ["Excitation", "optimise_excitation"],
         "excitation_file": ["load_excitations"],
@@ -20,7 +18,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "identify_arm": ["identify"],
         "response_fit": ["FOPDT", "fit_fopdt"],
         "regression": ["LeastSquares", "least_squares"],
-        "rls": ["RLS"],
         "single_joint": ["JointFit", "fit_joint"],
         "validation": ["Validation", "Whiteness", "nrmse_fit", "validate", "whiteness"],
     },

@@ -95,7 +95,7 @@ def process(
         derivatives: "zero-phase" (`central_derivatives`) or "causal" (`causal_derivatives`).
         cutoff_hz: of the low pass, of order 4 for "zero-phase", which may be None, and 1 for "causal".
         filter_u: pass u through the same filter as q.
-        delay: s from a sample to the moment its u acts (`estimate_delay`).
+        delay: s from a sample to the moment its u acts (notebook 11 measures it).
         held: True: u is held from its sample to the next, as a bench does; what then acts around the instant t_k is the
             mean of u_k-1 and u_k. False: u is a measurement at t_k. "causal" takes u as it stands, as the thesis does,
             shifted by the delay only.

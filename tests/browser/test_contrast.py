@@ -8,10 +8,9 @@ from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL
 CELLS = [
     "from ir50p_lab.course import check, my_robot, predict\n"
     "check('start-1', 7)\ncheck('rot_z', lambda angle: None)\npredict('start.fall', 'long', 's')\nmy_robot.progress()",
-    "from ir50p_lab.course.draw.scope import Scope\nfrom ir50p_lab.course.draw.strip_chart import StripChart\n"
-    "chart = StripChart(list('abcdef'), duration=1, ylim=(0, 1), ylabel='x [m]', title='six curves')\n"
-    "display(chart, Scope(badge='simulated'))\n"
-    "[chart.add(k / 10, [k / 10] * 6) for k in range(11)]\nchart.flush()",
+    "import numpy as np\nfrom ir50p_lab.course.draw.scope import Scope\n"
+    "scope, rows = Scope(badge='simulated'), np.ones((11, 3))\n"
+    "scope.show(np.arange(11) / 10, rows, rows, 100 * rows)\nscope",
     "from ir50p_lab.course.draw.style import new_figure\nfrom ir50p_lab.course.draw.widgets import live\n"
     "display(new_figure(3, 2))\n"
     "panel = live(new_figure(3, 2), lambda a: f'{1 / (1 - a):.2f}', a=(0, 1, 0.1, 0))\ndisplay(panel)\n"

@@ -13,9 +13,9 @@ from ir50p_lab.errors import InputError, LabError
 CELLS = [
     "from ir50p_lab.course.draw.style import new_figure\nfigure = new_figure(3, 2)\nfigure",
     "import ipywidgets\nfrom ir50p_lab.course.draw.widgets import live\nlive(new_figure(3, 2), lambda a: None, a=(0, 1, 0.1, 0))",
-    "from ir50p_lab.course.draw.strip_chart import StripChart\n"
-    "chart = StripChart(['a'], duration=1, ylim=(0, 1), ylabel='x [m]', title='t')\ndisplay(chart)\n"
-    "[chart.add(k / 10, [k / 10]) for k in range(11)]\nchart.flush()",
+    "import numpy as np\nfrom ir50p_lab.course.draw.scope import Scope\n"
+    "scope, rows = Scope(), np.arange(33).reshape(11, 3) / 30\n"
+    "scope.show(np.arange(11) / 10, rows, rows, 100 * rows)\nscope",
     "from tqdm.auto import tqdm\nfor _ in tqdm(range(3)): pass",
     "from ir50p_lab.course.live_arm import LiveArm\nfrom ir50p_lab.modelling import IR50P\nLiveArm(IR50P, [0, 0.5, -1])",
     "import sympy\nsympy.sqrt(sympy.Symbol('x')) / 2",
@@ -35,7 +35,9 @@ def pages(tmp_path_factory):
 def test_a_page_has_as_many_pictures_as_the_notebook_has_figures(pages):
     page = pages[0].read_text(encoding="utf-8")
     assert len(re.findall(r'<img[^>]*src="data:image/png;base64,[A-Za-z0-9+/]{500,}', page)) == PICTURES
-    assert len(re.findall(r'<svg [^>]*aria-label="t: a over 1 s".*?<polyline [^>]*points="[0-9 ]{40,}"', page)) == 1
+    assert (
+        len(re.findall(r'<svg [^>]*aria-label="Angle in deg.*?<polyline [^>]*points="[0-9. ]{40,}"', page, re.S)) == 1
+    )
     assert len(re.findall("<div data-live-arm", page)) == 1 and page.count("<math") == 3
     assert not re.search(r'<img (?![^>]*alt="[^"]+")|No description', page)
     assert "cost: $5 and $6" in page and "widget-view" not in page

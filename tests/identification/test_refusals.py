@@ -31,8 +31,6 @@ class Run:
 # name: calls that must be refused
 BAD = {
     "regressor": [(NAN_Q, Q, Q), (Q, Q[:5], Q), ("a", Q, Q), (Q[:, :2], Q[:, :2], Q[:, :2])],
-    "base_parameters": [(NAN_PHI,), (PHI[:, :, :0],), ("x",), (0 * PHI,)],
-    "estimate_delay": [(Run(q=NAN_Q),), (Run(t=T[::-1]),), (T,), (Run(q=0 * Q),)],
     "optimise_excitation": [(TH,), (None,), ("arm",)],
     "load_excitations": [("no_such_file.json",), ("/",)],
     "fit": [(NAN_PHI, Y), (PHI, Y[:5]), (PHI[:3], Y[:3]), (0 * PHI, Y), ("x", Y)],
@@ -47,7 +45,6 @@ BAD = {
     "nrmse_fit": [(NAN_Q, Q), (Q, Q[:5]), (0 * Q, Q)],
     "validate": [(TH, Run(q=NAN_Q)), (TH[:1], Run()), (TH, Run(t=T[::-1]))],
     "whiteness": [(NAN_Q,), (Q[:5],), (0 * Q,)],
-    "RLS": [],  # its steps below
 }
 KEYWORDS = {
     "output_error": {"progress": False},
@@ -65,9 +62,3 @@ def test_bad_input_is_refused_in_words(name, number):
     with pytest.raises(LabError) as refusal:
         getattr(package, name)(*BAD[name][number], **KEYWORDS.get(name, {}))
     assert len(str(refusal.value)) > 20
-
-
-@pytest.mark.parametrize("Phi, y", [(NAN_PHI[7], Y[0]), (PHI[0], Y[:2]), (PHI[0], [np.inf] * 3), ("x", Y[0])])
-def test_rls_refuses(Phi, y):
-    with pytest.raises(LabError):
-        package.RLS().step(Phi, y)

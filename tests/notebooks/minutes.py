@@ -1,9 +1,9 @@
 """How long a notebook takes: ``PYTHONPATH=. python tests/notebooks/minutes.py`` prints it and fills
 README's table and the openings.
 
-Sections are marked: who does the core alone needs less.
+Sections are marked: who does the core alone needs less. A session is 90 minutes.
 
-words/150 + 3 a prediction + 2 a panel + 6, 15 or 40 a function by its size + code lines/2, in steps of five minutes.
+words/100 + 3 a prediction + 2 a panel + 6, 15 or 40 a function by its size + code lines/2, in steps of five minutes.
 """
 
 import ast
@@ -13,10 +13,10 @@ from itertools import pairwise
 import nbformat
 from notebook_runner import FOLDER, REWRITTEN, ROOT
 
-from ir50p_lab.course.robot.catalogue import function_of, is_function, task
+from ir50p_lab.course.robot.catalogue import function_of, is_function, of_notebook, stays, task
 
 README = ROOT / "README.md"
-PANEL = re.compile(r"^(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
+PANEL = re.compile(r"^(?:\w+\.)?(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
 
 
 def minutes(path):
@@ -45,13 +45,16 @@ def core_of(cells):
 def _counted(cells):
     text = "\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
     code = "\n".join(cell.source for cell in cells if cell.cell_type == "code")
-    functions = [name for name in re.findall(r'^check\("([\w.]+)"', code, re.M) if is_function(name)]
+    checked = re.findall(r'^(?:\w+ = )?check\("([\w.]+)"', code, re.M)
+    functions = [name for name in checked if is_function(name)]
+    here = [name for name in checked if stays(name)]
     lines = sum(bool(line.strip()) for line in code.splitlines())
     predictions, panels = len(re.findall(r"^predict\(", code, re.M)), len(PANEL.findall(code))
     sizes = {name: _size(task(name).loan) - _size(task(name).given) for name in functions}
     before = {name: sizes[one] for one, name in pairwise(functions) if function_of(one) == function_of(name)}
     written = sum(_writing(size - before.get(name, 0)) for name, size in sizes.items())
-    return 5 * round((len(text.split()) / 150 + 3 * predictions + 2 * panels + written + lines / 2) / 5)
+    written += sum(_writing(_size(of_notebook(name).loan)) for name in here)
+    return 5 * round((len(text.split()) / 100 + 3 * predictions + 2 * panels + written + lines / 2) / 5)
 
 
 def _size(solution):
@@ -73,6 +76,12 @@ def _said(path):
     return f"{minutes(path)}, core {core(path)}"
 
 
+def sessions(path):
+    """Sessions of 90 minutes that the core of a notebook fills, in words."""
+    number = -(-core(path) // 90)
+    return "1 session" if number == 1 else f"{number} sessions"
+
+
 def filled(text):
     """The text of README with the minutes of its table as counted."""
     for path in rewritten():
@@ -86,7 +95,10 @@ def opening(path):
     """The text of a notebook's file with its minutes as counted."""
     text = path.read_text(encoding="utf-8")
     return re.sub(
-        r"about \d+ minutes(, the core \d+)?", f"about {minutes(path)} minutes, the core {core(path)}", text, count=1
+        r"about \d+ minutes(, the core \d+( \(\d sessions?\))?)?",
+        f"about {minutes(path)} minutes, the core {core(path)} ({sessions(path)})",
+        text,
+        count=1,
     )
 
 

@@ -7,56 +7,13 @@ import numpy as np
 
 from ir50p_lab.bench import UNIT, SimulatedBench, connect
 from ir50p_lab.bench.rest import rest_pose
-from ir50p_lab.course.checking.calling import Failed, array_like
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, origin, subplots
 from ir50p_lab.course.lab_book.results import arm_that_answers
 from ir50p_lab.course.robot import my_robot
-from ir50p_lab.course.robot.parts import parts
-from ir50p_lab.errors import BenchError, BoardLostError, InputError
+from ir50p_lab.errors import BenchError, BoardLostError
 from ir50p_lab.modelling.named_arms import load_arm
 
 _COLOURS = COLOURS["blue"], COLOURS["orange"], COLOURS["green"]
-
-
-def circle_in_use(circle, arm, centre, radius, first, lap):
-    """The student's circle(t), or the course's while it gives no angles; a line says which, and why.
-
-    Whether it is a circle the notebook asks. Args: circle: f(t) -> (3, 3), rows q, qd, qdd; centre: (3,) m; radius: m;
-    first: (3,) rad, where it begins; lap: s for a round. Raises InputError for a circle that the tip cannot follow.
-    """
-    limits, turns = parts(arm).limits, np.linspace(0, 2 * np.pi, 100)
-    places = centre + radius * np.column_stack([np.cos(turns), np.sin(turns), 0 * turns])
-    if missing := sum(my_robot.reach(p, arm.l, np.zeros(3), limits) is None for p in places):
-        remedy = "make it smaller, or move its centre"
-        raise InputError(f"a circle of radius {radius} m: {missing} of its 100 places have no pose; {remedy}")
-
-    def course(t):
-        turned, rate, _ = my_robot.quintic(0.0, 2 * np.pi, lap, t)
-        out, along = np.array([[np.cos(turned), np.sin(turned), 0], [-np.sin(turned), np.cos(turned), 0]])
-        p = centre + radius * out
-        q = my_robot.reach(p, arm.l, first, limits)
-        J = my_robot.jacobian(my_robot.frames(q, arm.l), 3, p)[:3]
-        return np.array([q, np.linalg.solve(J, radius * rate * along), np.zeros(3)])
-
-    np.asarray(centre).setflags(write=False)  # `place = centre`, `place += ...` would move it for good
-    says = _no_angles(circle, lap, lambda t: my_robot.forward_kinematics(course(t)[0], arm.l))
-    print(f"circle: the course's. Of yours: {says}" if says else "circle: yours")
-    return course if says else circle
-
-
-def _no_angles(circle, lap, place):
-    """Return why circle(t) does not give numbers (3, 3) that depend on t alone, in a sentence; "" if it does."""
-    asked, given = np.r_[np.linspace(0, lap, 9), -1, lap + 1], []
-    try:
-        for t in (*asked, *asked[::-1]):
-            given.append(array_like(np.zeros((3, 3)), circle, t))
-    except Failed as failed:
-        says = failed.args[0]
-        if "is None" in says:
-            says = f"at t = {t:.1f} s something in it is None; `reach` gives None where there is no pose"
-            return f"{says}. Print the place that it gets: there it should be {place(t).round(3)} m"
-        return "it gives no angles yet" if "ellipsis" in says else says
-    return "" if np.array_equal(given, given[::-1]) else "the same t twice gives two answers: it remembers"
 
 
 def go(controller, reference, seconds):
@@ -97,24 +54,6 @@ def three_parts(centre, tip, wanted):
     sense = np.sign(np.sum(left[:-1] * np.diff(wanted, axis=0)))  # which way round it goes
     off = 1000 * (tip - wanted)
     return np.column_stack([np.sum(off * out, axis=1), -sense * np.sum(off * left, axis=1), off[:, 2]])
-
-
-def once_round_in_use(once_round, K, T, late):
-    """The student's once_round(kp, w), or the course's while it gives no two numbers, or others; a line says which."""
-
-    def course(kp, w):
-        return kp * K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T) + w * late)
-
-    try:
-        mine = array_like(np.zeros(2), once_round, 700, 8.0)
-    except Failed as failed:
-        says = "it gives no size and degrees yet" if "ellipsis" in failed.args[0] else failed.args[0]
-        print(f"once_round: the course's. Of yours: {says}")
-        return course
-    same = np.allclose(mine, course(700, 8.0))
-    theirs = np.round(course(700, 8.0), 3)
-    print("once_round: yours" if same else f"once_round: the course's. Of yours: 700 at 8 rad/s {mine}, not {theirs}")
-    return once_round if same else course
 
 
 class Filtered:

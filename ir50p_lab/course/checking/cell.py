@@ -8,7 +8,6 @@ import inspect
 import linecache
 import math
 import re
-from collections import Counter
 
 import numpy as np
 
@@ -193,27 +192,6 @@ def written_wrong(function):
                 if len(filled) > 1:
                     return f"{' and '.join(filled)} are names of one array: what is put into one changes all"
     return ""
-
-
-def is_copy(text, other):
-    """Tell whether a text is a copy of another: at most one expression in six differs.
-
-    Names and layout are left out of the comparison; added code is ignored.
-    """
-    steps = _steps(other)
-    return (steps - _steps(text)).total() <= steps.total() // 6
-
-
-def _steps(text):
-    """The expressions of a program, one a statement, how often each; its own names are left out."""
-    tree = ast.parse(text)
-    own = {getattr(one, "name", None) or getattr(one, "arg", None) for one in ast.walk(tree)}
-    own |= {one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
-    for one in ast.walk(tree):
-        if isinstance(one, ast.Name) and one.id in own:
-            one.id = "_"
-    parts = [part for one in ast.walk(tree) if isinstance(one, ast.stmt) for part in ast.iter_child_nodes(one)]
-    return Counter(ast.dump(one) for one in parts if isinstance(one, ast.expr) and not isinstance(one, ast.Name))
 
 
 def _lines(text, node):

@@ -6,7 +6,7 @@ import random
 import timeit
 
 from ir50p_lab.course import lab_book
-from ir50p_lab.course.checking.cell import CannotTake, has_dots, is_copy, take
+from ir50p_lab.course.checking.cell import CannotTake, has_dots, take
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.in_notebook import check_here
 from ir50p_lab.course.checking.note import Note, ended, show
@@ -45,8 +45,6 @@ def check(name, answer=...):
         where = f": dots still stand in `{dots[0]}`" if dots[0].strip(".") else ""
         return _show("open", name, f"not written yet{where}. It returns {wanted.asks}.")
     result = grade(wanted, source)
-    if result.state == "right" and folder.was_lent(name) and is_copy(source.text, wanted.loan):
-        return _show("open", name, "right, but it is the course's, as it was lent: it stays a loan. Write it your way.")
     if result.state == "right":
         return _keep(source, wanted, result.says)
     return _wrong(source, wanted, result)
@@ -101,7 +99,7 @@ def _wrong(source, wanted, result):
         says += f" (This try was not counted: {error}.)"
     more = [("one input that fails", result.example)] if result.example else []
     if tries >= _BEFORE_LOAN and not (folder.is_there(wanted.name) or folder.is_there(wanted.function)):
-        folder.lend(wanted, after_tries=True)
+        folder.lend(wanted)
         says += (
             f" The course lends you its {wanted.name}, so that you can go on; it is marked as a loan in your report."
         )

@@ -3,11 +3,9 @@
 import copy
 import inspect
 import re
-import time
 import warnings
 from collections import Counter
 from dataclasses import dataclass, replace
-from itertools import chain
 
 import numpy as np
 
@@ -16,11 +14,7 @@ from ir50p_lab.course.checking.cell import made, written_wrong
 from ir50p_lab.course.checking.distortions import distortions, entries
 from ir50p_lab.course.checking.shape_checks import kind_of, no_numbers, number_of_results
 from ir50p_lab.course.checking.task import Failed, shown
-from ir50p_lab.course.checking.variants import in_words_of, variants
 from ir50p_lab.course.robot.source import Source
-
-_clock = getattr(time, "thread_time", time.process_time)  # a browser tab has one thread, and no clock of it
-_PATIENCE = 0.75  # s of processor time since the answer came: beyond it no further mistake is tried
 
 
 @dataclass(frozen=True)
@@ -37,7 +31,7 @@ class _Trial:
     """What a function gave back: returned (Failed where it stopped) and expected, a list each; bad: the wrong cases.
 
     result: which one of several results is looked at; before: lists and arrays beside the function, as they were;
-    end: when the search for a mistake ends; guess: words that say too little alone; example: the case to show.
+    example: the case to show.
     """
 
     task: object
@@ -46,9 +40,7 @@ class _Trial:
     returned: list
     expected: list
     before: dict
-    end: float
     result: int | None = None
-    guess: str = ""
     example: int | None = None
 
     def __post_init__(self):
@@ -58,12 +50,11 @@ class _Trial:
     def of(self, result):
         """The trial of one of several results alone."""
         returned, expected = ([one[result] for one in many] for many in (self.returned, self.expected))
-        return replace(self, task=self.task.of(result), returned=returned, expected=expected, result=result, guess="")
+        return replace(self, task=self.task.of(result), returned=returned, expected=expected, result=result)
 
 
 def grade(task, answer):
     """Return the Grade on a function or class, or on the Source of one, whatever it does."""
-    end = _clock() + _PATIENCE
     function = made(answer, task) if isinstance(answer, Source) else answer
     try:
         if task.tried is not None:
@@ -74,10 +65,10 @@ def grade(task, answer):
     except Failed as failed:
         return Grade("wrong", *failed.args)
     expected = [task.expected(copy.deepcopy(case), one) for case, one in zip(cases, returned, strict=True)]
-    trial = _Trial(task, function, cases, returned, expected, before, end)
+    trial = _Trial(task, function, cases, returned, expected, before)
     if not trial.bad:
         return _grade_use(task, cases, returned, expected)
-    says = _read(trial) or trial.guess or _count(trial)
+    says = _read(trial) or _count(trial)
     order = trial.bad if trial.example is None else [trial.example, *trial.bad]
     visible = (_example(task, cases[k], expected[k], returned[k]) for k in order)
     return Grade("wrong", says, next(filter(None, visible), ""))
@@ -105,33 +96,16 @@ def _known(trial):
         return ""  # nothing to compare
     order = [*bad, *sorted(set(range(len(returned))) - set(bad))]
     for mistake in _mistakes(trial):
-        if not all(_is_mistake(task, mistake, trial.cases[k], returned[k]) for k in order):
-            continue
-        if not mistake.of_code:
+        if all(_is_mistake(task, mistake, trial.cases[k], returned[k]) for k in order):
             return mistake.says
-        words, complete = in_words_of(trial.function, mistake.says)
-        where = "" if stopped or task.same or task.results else entries(task, trial.cases, returned, trial.expected)
-        if where:
-            words = words.partition(": look at")[0] if complete else ""
-            if where.count("wrong sign") == 1 and words.endswith("wrong sign"):  # its use is wrong, not the number
-                words = ""
-            return f"{where}: {words}" if words else where
-        if not complete:
-            trial.guess = words
-        return words if complete else ""
     return ""
 
 
 def _mistakes(trial):
-    """Those of the task, then the usual ones as long as patience lasts."""
+    """Yield those of the task, then the usual ones, all of them: what is said depends on the answer alone."""
     yield from trial.task.slips
-    if all(map(_is_zero, trial.returned)):  # too little to tell one from another
-        return
-    spoilt = () if trial.task.results else variants(trial.task)  # tried for each result
-    for mistake in chain(distortions(trial.task), spoilt):
-        if _clock() > trial.end:
-            return
-        yield mistake
+    if not all(map(_is_zero, trial.returned)):  # zeros say too little to tell one from another
+        yield from distortions(trial.task)
 
 
 def _outside(trial):
@@ -172,7 +146,7 @@ def _results(trial):
     right = [name for name in parts if name not in wrong]
     intro = f"{_listed(right)} right; " if right else ""
     for name, part in wrong.items():
-        if says := _read(part) or part.guess:
+        if says := _read(part):
             trial.example = part.bad[0] if part.example is None else part.example
             named = len(name) > 2 and name in says  # `t` and `x` stand in every second word
             return says if named else f"{intro}{name}: {says}"
@@ -213,13 +187,12 @@ def _symptom(trial):
     alike = [k for k, says in said.items() if _without_numbers(says) == most]
     seen = (k for k in alike if shown(trial.returned[k]) != shown(trial.expected[k]))  # in the digits that are shown
     trial.example = next(seen, alike[0])
-    says = said[trial.example]
-    return f"{trial.guess}; {says}" if trial.guess else says
+    return said[trial.example]
 
 
 READINGS = (  # of a wrong answer, in this order: the first that has something to say is told
     _written,  # its own lines: an argument overwritten, `==` for `=`, one array under two names
-    _known,  # mistakes of the task, results and arguments spoilt in usual ways, a solution with one step changed
+    _known,  # mistakes of the task, results and arguments spoilt in usual ways
     _outside,  # a list or array beside it that each call changes
     _stops,  # the line in which it stopped, and why
     _form,  # nothing, another kind of thing, another number of results, another shape

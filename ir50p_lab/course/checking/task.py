@@ -22,12 +22,11 @@ class Mistake:
     """A typical mistake.
 
     wrong: a function with the task's arguments that makes this mistake. says: the symptom in the student's numbers and
-    where to look, never the corrected expression. of_code: it is a change of the course's solution, told in its names.
+    where to look, never the corrected expression.
     """
 
     wrong: Callable
     says: str
-    of_code: bool = False
 
 
 def text_of(*functions):
@@ -106,7 +105,7 @@ class Task:
     arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
     slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
-    routes: other solutions, as text; rights: functions of several results that are right as well;
+    rights: functions of several results that are right as well;
     parts: names of what stands beside each other in the answer.
     results: names, where several things are returned: each is graded by itself; `tolerance` and `same` may be tuples
     then, one for each.
@@ -126,7 +125,6 @@ class Task:
     cases: Callable | None = None
     leans_on: tuple = ()
     slips: tuple = ()
-    routes: tuple = ()
     rights: tuple = ()
     parts: tuple = ()
     results: tuple = ()

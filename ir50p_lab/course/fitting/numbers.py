@@ -32,7 +32,7 @@ NUMBERS = (
         "12_identification",
         "how many of the 18 parameters of the rigid arm, or groups of them, all three joints together tell while "
         "joint 1 is clamped",
-        13,  # as `base_parameters` counts them, too
+        13,
         tolerance=0.4,
         because="it is a whole number",
         why="Three have no effect, and two pairs act as one each: theta2 with theta9, theta5 with theta10.",
@@ -42,6 +42,6 @@ NUMBERS = (
             "The offset Tf1 needs no motion: joint 1 still shows what it pushes with.": 14,
             "theta7 and theta8 belong to no rigid body; the question is about the other 18.": 20,
         },
-        hint="Put a zero for the velocity and the acceleration of joint 1 into each column; base_parameters counts.",
+        hint="Put 0 for speed, acceleration and direction of joint 1 into your regressor, for many random states.",
     ),
 )

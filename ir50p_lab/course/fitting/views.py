@@ -1,21 +1,13 @@
-"""Figures of notebook 12, first part: why feedback biases, and what a motion lets one see."""
+"""Why an arm is recorded in closed loop, what that costs, and the motions that are kept with the course."""
+
+from functools import lru_cache
 
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.course.draw.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
-from ir50p_lab.identification import load_excitations, optimise_excitation, regressor
-from ir50p_lab.identification.parameters import ACTS_ON, NAMES, ONLY_THESIS
+from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure
+from ir50p_lab.identification import load_excitations, optimise_excitation
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals.fourier import series
-
-NOISE_PWM, INDEPENDENT = 8.0, 1100  # assumed: what is left of u, and how many independent samples 110 s hold
-_WATCHED = (  # joint, parameter, what it is, and its curve
-    (0, "theta1", "inertia of joint 1", JOINTS[0], "-"),
-    (1, "theta9", "inertia of joint 2", JOINTS[1], "-"),
-    (2, "j3", "inertia of joint 3", JOINTS[2], "-"),
-    (1, "theta3", "gravity of joint 2", COLOURS["grey"], "--"),
-)
 
 
 def two_copies(arm, controller, reference, seconds=8):
@@ -91,6 +83,7 @@ class FeedbackView:
         return f"least squares {slope:.4f}, true b = {self.loop.b:.4f} rad/s per count{by_instrument}"
 
 
+@lru_cache(maxsize=20)
 def kept_motion(arm, number=0):
     """A Fourier motion of 110 s to identify from (number 0), or another one to validate with (1 to 20).
 
@@ -103,61 +96,3 @@ def kept_motion(arm, number=0):
     # room at the limits and over the table: the thesis' PID lags and sags
     options = {"margin": 0.2, "table": 0.1, "standing": 6, "tries": 1000, "seed": number, "progress": False}
     return optimise_excitation(arm, harmonics=3, max_joint_speed=speed, **options).reference
-
-
-def relative_errors(arm, motion, frequency_hz, samples=300):
-    """Standard errors to be expected, in % of the value, and the commands, when a motion is run at another speed.
-
-    Assumed: 8 PWM counts of noise and 1100 independent samples. Args: arm: Arm with motors; motion: Fourier;
-    frequency_hz: of its first harmonic. Returns: (4,) % for the parameters of `_WATCHED`; u (samples, 3) PWM counts.
-    """
-    period = 1 / frequency_hz
-    t = period * (np.arange(samples) + 0.5) / samples
-    rows = series(motion.a, motion.b, motion.q0, period, t)
-    Phi, theta = regressor(rows[:, 0], rows[:, 1], rows[:, 2]), arm.theta_pwm
-    percent = []
-    for joint, name, *_ in _WATCHED:
-        columns = [k for k in ACTS_ON[joint] if NAMES[k] not in ONLY_THESIS]
-        inverse = np.linalg.pinv(Phi[:, joint, columns])  # lengths of its rows: sqrt of the diagonal of (A^T A)^-1
-        k = NAMES.index(name)
-        error = NOISE_PWM * np.linalg.norm(inverse[columns.index(k)]) * np.sqrt(samples / INDEPENDENT)
-        percent.append(100 * error / abs(theta[joint, k]))
-    return np.array(percent), np.einsum("nij,ij->ni", Phi, theta)
-
-
-class FrequencyView:
-    """Commands that a motion needs, and how sure it makes the parameters, over its frequency from 0.02 to 0.3 Hz.
-
-    Args: arm: Arm with motors; motion: Fourier. Attributes: figure.
-    """
-
-    def __init__(self, arm, motion):
-        self._arm, self._motion = arm, motion
-        self.figure, left, right = subplots(9.6, 3.8, cols=2)
-        for level in (-255, 255):
-            left.axhline(level, **SETPOINT)
-        self._u = left.plot((np.arange(300) + 0.5) / 300, np.zeros((300, 3)), lw=1.3)
-        left.set(xlim=(0, 1), ylim=(-450, 450), xlabel="part of the period [1]", ylabel="command needed [PWM]")
-        left.set_title("Dashed: all the motors have")
-        f = np.geomspace(0.02, 0.3, 40)
-        errors = np.array([relative_errors(arm, motion, x)[0] for x in f])
-        for k, (_, name, what, colour, line) in enumerate(_WATCHED):
-            right.loglog(f, errors[:, k], line, color=colour)
-            place = {"xy": (0.97, 0.94 - 0.07 * k), "xycoords": "axes fraction", "ha": "right"}
-            right.annotate(f"{what}: {name}", color=colour, fontsize=8, **place)
-        self._mark = right.axvline(f[0], color=COLOURS["dark"], lw=1)
-        right.set(xlabel="lowest frequency of the motion [Hz]", ylabel="standard error [% of the value]")
-        right.set_xticks([0.02, 0.03, 0.05, 0.1, 0.2, 0.3], ["0.02", "0.03", "0.05", "0.1", "0.2", "0.3"])
-        right.minorticks_off()
-        right.set_title("Twice as fast: inertia four times as sure")
-
-    def update(self, frequency):
-        """Draw for this frequency, Hz. Returns what to mind, in words."""
-        percent, u = relative_errors(self._arm, self._motion, frequency)
-        for line, values in zip(self._u, u.T, strict=True):
-            line.set_ydata(values)
-        self._mark.set_xdata([frequency, frequency])
-        inertia = ", ".join(f"{x:.1f}" for x in percent[:3])
-        most = np.abs(u).max()
-        end = "within reach" if most <= 255 else "out of reach: it would be cut off"
-        return f"inertia known to {inertia} %; gravity to {percent[3]:.1f} %; largest command {most:.0f}: {end}"

@@ -15,6 +15,7 @@ _WAYS = {
     "07  your plan": "by_plan",
     "08  your controller": "by_pid",
     "10  your calibration": "by_ruler",
+    "12  your model": "by_model",
     "18  a picture": "by_camera",
 }
 

@@ -1,4 +1,4 @@
-"""The chain of the student's own results: calibration (10), model (12), camera (17), each for the bench it is from.
+"""The chain of the student's own results: calibration (10), model (13), camera (17), each for the bench it is from.
 
 What a bench needs of them (`connect()` takes the calibration) is read in `bench.result_files`; all is written here.
 """
@@ -16,7 +16,7 @@ from ir50p_lab.errors import InputError, NotMeasuredError
 from ir50p_lab.home import replace_text
 from ir50p_lab.inputs import numbers
 
-NOTEBOOKS = {"calibration": "10_bench_measure", "model": "12_identification", "camera": "17_camera_calibration"}
+NOTEBOOKS = {"calibration": "10_bench_measure", "model": "13_is_the_model_good", "camera": "17_camera_calibration"}
 _ENDINGS = {"calibration": ".toml", "model": ".model", "camera": ".yml"}
 _RENDERED = {"bench": "rendered pictures", "bench_id": "rendered", "arm": "", "simulated": "true"}
 

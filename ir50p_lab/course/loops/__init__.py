@@ -9,6 +9,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "contest_rules": ["LIMITS", "PID", "contest", "score"],
         "loop_views": ["Trembling", "ends", "one_loop", "three_loops", "weight_over_angle"],
         "speed_response": ["speed_jump"],
-        "tuning_views": ["one_joint"],
+        "tuning_views": ["one_joint", "tuning_panel"],
     },
 )

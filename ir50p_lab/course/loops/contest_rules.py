@@ -186,7 +186,7 @@ def contest(controller, name):
     print(found)
     best = min(before, default=_LOST)  # where every drive was cut there is none
     if found.value < best:
-        print(f"attempt {len(before) + 1}: your best so far")
+        print(f"attempt {len(before) + 1}: the best so far")
     elif best < _LOST:
         print(f"attempt {len(before) + 1}: your best is {best:.2f}, attempt {before.index(best) + 1}")
     return found

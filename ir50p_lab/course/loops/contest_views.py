@@ -92,8 +92,14 @@ def sliders_of(controller, arm, practice):
         return scored
 
     if compiled:
-        return update, "the sliders set your gains; the compiled PID runs, it sent the same commands as your class"
-    return update, "the sliders set your gains; your Python runs: the compiled PID is another law (not a better one)"
+        return (
+            update,
+            "the sliders set the gains; the compiled PID runs, it sent the same commands as the class in Python",
+        )
+    return (
+        update,
+        "the sliders set the gains; the class in Python runs: the compiled PID is another law (not a better one)",
+    )
 
 
 def history(rules=None):

@@ -8,6 +8,8 @@ from ir50p_lab.controllers import simc_integrating
 from ir50p_lab.course.checking.calling import Failed, array_like
 from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
+from ir50p_lab.course.draw.widgets import live, slider
+from ir50p_lab.course.robot import my_robot
 from ir50p_lab.identification import FOPDT
 
 _RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})
@@ -35,6 +37,32 @@ def one_joint(*runs, labels, joint, unit="PWM"):
     below.set(xlabel="time [s]", ylabel=f"command [{unit}]")
     above.legend(fontsize=8, loc="best")
     return figure
+
+
+def tuning_panel(run_of, *, joint, **gains):
+    """The picture of `one_joint` under sliders: each place of them is a run with those gains. Returns: LivePanel.
+
+    Args: run_of: f(**gains) -> SimulationResult; it runs the student's own PID. joint: 1, 2, 3. gains: name=(least,
+    most, step, start).
+    """
+    figure = one_joint(run_of(**{name: start for name, (*_, start) in gains.items()}), labels=["now"], joint=joint)
+    above, below = figure.axes
+
+    def update(**now):
+        run = run_of(**now)
+        angle, push = run.q[:, joint - 1], run.u[:, joint - 1]
+        above.lines[1].set_ydata(angle)
+        below.lines[0].set_ydata(push)
+        for ax in (above, below):
+            ax.relim()
+            ax.autoscale_view()
+        past = np.max(-run.error[:, joint - 1])
+        left = np.mean(run.error[-100:, joint - 1])
+        moved = {"yours": "your PID", "on loan": "a PID on loan"}.get(my_robot.whose("PID"), "the course's PID")
+        said = f"{moved}: {1000 * max(past, 0):.0f} mrad past its target, {1000 * left:+.0f} mrad short in the end"
+        return f"{said}, trembles by {np.std(push[-100:]):.0f} counts (std)"
+
+    return live(figure, update, **{name: slider(*row, label=f"K{name[1:]}") for name, row in gains.items()})
 
 
 def ruler():

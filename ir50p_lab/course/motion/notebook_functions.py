@@ -78,6 +78,18 @@ def _lets_it_back(speed, taken):
     return speed - np.sign(speed) * taken
 
 
+def _one_sided(speed, taken):
+    return speed - taken
+
+
+def _angles_stand(t, x):
+    return np.concatenate([np.zeros(3), falling(t, x)[3:]])
+
+
+def _angles_for_speeds(t, x):
+    return np.concatenate([x[:3], falling(t, x)[3:]])
+
+
 def _one_gear(N, kt, ke, Ra, V):
     return N * kt * V / (255 * Ra), N * kt * ke / Ra
 
@@ -104,6 +116,9 @@ def _neither(q, qd, qdd):
 
 
 _BACK = "a slow joint comes out of it moving backwards: can friction take more speed than there is?"
+_SIDE = "forwards it brakes, backwards it pushes along: friction works against the speed, whichever way"
+_STAND = "the angles do not change in it: at which rates do they, when the arm moves?"
+_ANGLES = "the angles change at the rate of the angles in it: which part of x are speeds?"
 _TWICE = "the gear comes into the damping twice: the motor turns faster, and its brake is made stronger"
 _PER_VOLT = "the gain is that of one volt: how many volts is one count?"
 _RUBS = "friction costs counts, too"
@@ -113,9 +128,11 @@ _BOTH = "friction and the motor's own brake cost counts, too"
 
 TASKS = notebook_tasks(
     __file__,
-    falling=(falling, _states, "six rates: of three angles and of three speeds", {"tolerance": 0.02}),
+    falling=(falling, _states, "six rates: of three angles and of three speeds", {
+        "slips": (Mistake(_angles_stand, _STAND), Mistake(_angles_for_speeds, _ANGLES)), "tolerance": 0.02}),
     halve=(halve, _limits, "the shortest time that is enough, s", {"tolerance": 0.01, "unit": "s"}),
-    slide=(slide, _slides, "the speed that is left, rad/s", {"slips": (Mistake(_lets_it_back, _BACK),)}),
+    slide=(slide, _slides, "the speed that is left, rad/s", {
+        "slips": (Mistake(_lets_it_back, _BACK), Mistake(_one_sided, _SIDE))}),
     motor_factors=(motor_factors, _motors, "gain and damping, two numbers", {
         "results": ("gain", "damping"), "slips": (Mistake(_one_gear, _TWICE), Mistake(_of_volts, _PER_VOLT))}),
     counts_for=(counts_for, _motions, "the counts, three numbers", {

@@ -1,13 +1,13 @@
 """What the thesis prints in 2.2.4, as functions: mistakes included.
 
-Only for the 'Thesis check' cells of notebook 12 and their tests. For calculations use `ir50p_lab.identification`.
+Only for the 'Thesis check' cells of A1 and their tests. For calculations use `ir50p_lab.identification`.
 Parts that the source has lost (the beginnings of U1 and U2, the columns 6 to 9) are taken as they must be.
 """
 
 import numpy as np
 
 from ir50p_lab.identification import regressor
-from ir50p_lab.modelling import derive, gravity, inverse_dynamics
+from ir50p_lab.modelling import gravity, inverse_dynamics
 
 
 def regressor_2_51(q, qd, qdd):
@@ -46,30 +46,3 @@ def torque_2_48(arm, q, qd, qdd):
     swing = (m3 * lc3**2 + arm.Iyy[2] - arm.Ixx[2]) * c23 * s23 + k * c2 * s23
     tau[:, 2] += swing * (a - a**2) + k * (s2 * b - s3 * b**2) + arm.friction.fv[2] * (b - c)
     return tau
-
-
-def torque_in_symbols(arm, q, qd, qdd):
-    """Torque without dry friction, in N m, from the symbolic derivation: the independent route.
-
-    Args: arm: Arm with motors; q, qd, qdd: (n, 3). Returns: (n, 3).
-    """
-    import sympy
-
-    model = derive()
-    symbols = [list(model.q), list(model.qd), list(model.qdd), list(model.symbols.values())]
-    tau = sympy.lambdify(symbols, list(model.tau), "numpy", cse=True)(q.T, qd.T, qdd.T, model.values(arm))
-    return np.column_stack(tau) + qd * np.array(arm.friction.fv)
-
-
-def recursive_2_46(Phi, y, P):
-    """(2.46) as printed, from theta = 0 and P (20, 20). Wrong: the inverse of P between phi^T and phi in the gain.
-
-    Args: Phi: (n, 3, 20); y: (n, 3). Returns: theta (20,).
-    """
-    theta = np.zeros(len(P))
-    for Phi_t, y_t in zip(Phi, y, strict=True):
-        bracket = np.eye(3) + Phi_t @ np.linalg.solve(P, Phi_t.T)
-        K = np.linalg.solve(bracket, Phi_t @ P).T
-        theta = theta + K @ (y_t - Phi_t @ theta)
-        P = P - K @ Phi_t @ P
-    return theta

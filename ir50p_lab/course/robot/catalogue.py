@@ -18,7 +18,7 @@ _TABLE = """
 08 loops         PID
 09 loops         step_metrics
 10 at_the_bench  fit_line low_pass
-12 fitting       regressor least_squares rls_step
+12 fitting       least_squares regressor rls_step
 13 fitting       fit_percent
 14 torque        computed_torque
 15 torque        adaptive_step
@@ -35,6 +35,7 @@ _HERE = {  # functions that stay in their notebook, and the room in which the co
     **dict.fromkeys(("along", "pace", "push"), "kinematics"),
     **dict.fromkeys(("centres", "heaviness", "shoulder_holds", "lump_torque", "torque", "acceleration"), "dynamics"),
     **dict.fromkeys(("falling", "halve", "slide", "motor_factors", "counts_for"), "motion"),
+    **dict.fromkeys(("circle", "once_round"), "at_the_bench"),
 }
 _at = {}  # stage of each function that this session works on
 

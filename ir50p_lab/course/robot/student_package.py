@@ -13,7 +13,6 @@ from ir50p_lab.course.robot.catalogue import ORDER, function_of
 from ir50p_lab.course.robot.source import Source
 
 _LOAN = "# on loan from the course"
-_SEEN = f"{_LOAN}, after six tries"
 _STAGE = ", stage "
 _PACKAGE = "my_robot"
 _loaded = {"stamp": None}
@@ -41,12 +40,6 @@ def is_there(name):
 def on_loan(name):
     """Tell whether a function in the folder is the course's."""
     return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
-
-
-def was_lent(name):
-    """Tell whether the course lent a function because it would not come right: now, or before it was begun again."""
-    files = [path_of(name), *(folder() / "old").glob(f"{name}_*.py")]
-    return any(file.exists() and file.read_text(encoding="utf-8").startswith(_SEEN) for file in files)
 
 
 def keep(source, task, *, loan=""):
@@ -80,9 +73,9 @@ def keep(source, task, *, loan=""):
     return lent
 
 
-def lend(task, *, after_tries=False):
+def lend(task):
     """Write the course's solution of a function, marked as on loan. Returns what else came along."""
-    return keep(Source(task.function, task.loan, _calls(task)), task, loan=_SEEN if after_tries else _LOAN)
+    return keep(Source(task.function, task.loan, _calls(task)), task, loan=_LOAN)
 
 
 def put_aside(name):

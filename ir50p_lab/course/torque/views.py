@@ -31,7 +31,7 @@ def follow(arm, controller, reference, seconds, *, seed=0):
 
 
 def training_run(arm, *, seed=0):
-    """A recording to identify from, on the simulated bench: the first motion of notebook 12, thesis' PID."""
+    """A recording to identify from, on the simulated bench: the first motion of notebook 13, thesis' PID."""
     return follow(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
 
 

@@ -40,12 +40,22 @@ WRONG = [
     ("motor_factors", "    return N * kt * V / (255 * Ra), N * kt * ke / Ra", "twice"),
     ("counts_for", "    return (mass(q) @ qdd + weight(q)) / 0.0157", ""),
     ("counts_for", "    return np.zeros(3)", "0 for every input"),
+    ("circle", "    return [q_now, 0 * q_now, 0 * q_now]", ""),
+    ("circle", "    return right(t) * [[1], [0], [1]]", ""),
+    ("circle", "    return right(t) * [[1], [-1], [1]]", ""),
+    ("circle", "    return np.degrees(right(t))", ""),
+    ("circle", "    return right(t % 6.5)", ""),
+    ("once_round", "    return kp * K / (w * np.hypot(1, w * T)), 90 + np.arctan(w * T) + w * late", "radians"),
+    ("once_round", "    return K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T) + w * late)", ""),
+    ("once_round", "    return kp * K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T))", "left out"),
 ]
 GIVEN = {
     "tip": lambda q, l: jacobian(frames(q, l), 3, frames(q, l)[3][:3, 3])[:3],
     "l": np.array(IR50P.l),
     "mass": lambda q: mass_matrix(IR50P, q),
     "weight": lambda q: of_notebook("torque").right(q, np.zeros(3), np.zeros(3)),
+    "q_now": np.zeros(3),
+    "right": of_notebook("circle").right,
     "fall": lambda x: forward_dynamics(IR50P.without_friction(), x[:3], x[3:], np.zeros(3)),
 }
 

@@ -1,7 +1,6 @@
 """Wrong answers are told apart from their numbers, right ones of any shape are taken, and nothing makes check raise."""
 
 import dataclasses
-import itertools
 import re
 from pathlib import Path
 
@@ -10,12 +9,10 @@ import pytest
 import solutions
 from cells import cell
 
-from ir50p_lab.course import check, my_robot, reset
+from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking import grade as grading
 from ir50p_lab.course.checking.calling import call, given
 from ir50p_lab.course.checking.cell import CannotTake, take
-from ir50p_lab.course.checking.task import Mistake
-from ir50p_lab.course.robot import student_package as folder
 from ir50p_lab.course.robot.catalogue import task, written
 
 
@@ -170,33 +167,11 @@ def test_what_is_not_written_in_the_cell_is_refused(monkeypatch, capsys):
     assert "right, and yours" not in told(capsys, "rot_z", text="def rot_z(angle):\n    return np.eye(3) + angle")
 
 
-def test_a_loan_pasted_back_stays_a_loan(capsys):
-    assert "right, and yours" in told(capsys, "rot_z", text=task("rot_z").loan)  # before it was lent, it is one's own
-    reset("rot_z")
+def test_after_six_tries_the_right_formula_is_ones_own_whoever_printed_it(capsys):
     for k in range(6):
         told(capsys, "rot_z", text=f"def rot_z(angle):\n    return {k} * np.eye(3)")
-    lent = folder.path_of("rot_z").read_text()
-    disguised = lent.replace("c = ", "ahead = ").replace("c,", "ahead,").replace("[s, c", "[s, ahead")
-    disguised = disguised.replace("    s =", "    # mine\n    s   =").replace("angle", "a")
-    wrapped = lent.replace("def rot_z", "def turn") + "\n\ndef rot_z(a):\n    unused = 3\n    return 1 * turn(a) + 0.0"
-    for text in (lent, disguised, wrapped):
-        assert "it stays a loan" in told(capsys, "rot_z", text=text)
-        assert my_robot.whose("rot_z") == "on loan"
-    assert "right, and yours" in told(capsys, "rot_z")
-
-
-def test_a_loan_with_a_new_last_line_is_no_work_of_ones_own(capsys):
-    for k in range(6):
-        told(capsys, "frames", text=f"def frames(q, l):\n    return {k} * np.eye(3)")
-    lent = task("frames").loan
-    for last in (
-        "np.stack([T0, T1, T2, T3])",
-        "+np.array([T0, T1, T2, T3])",
-        "(lambda x: x)(np.array([T0, T1, T2, T3]))",
-    ):
-        text = lent.replace("np.array([T0, T1, T2, T3])", last)
-        assert "it stays a loan" in told(capsys, "frames", text=text)
-    assert "right, and yours" in told(capsys, "frames")
+    assert my_robot.whose("rot_z") == "on loan"
+    assert "right, and yours" in told(capsys, "rot_z", text=task("rot_z").loan)
 
 
 def test_no_sentence_says_not_yet_twice(capsys):
@@ -257,13 +232,6 @@ def test_places_to_reach_have_one_best_pose():
         assert len(turns) < 2 or np.diff(np.sort(turns))[0] > 0.05
 
 
-def test_the_search_for_a_mistake_ends_in_time(monkeypatch):
-    monkeypatch.setattr(grading, "_PATIENCE", 0.05)
-    endless = (Mistake(lambda angle: np.zeros(angle), f"number {k}") for k in itertools.count())
-    monkeypatch.setattr(grading, "distortions", lambda task: endless)
-    assert grading.grade(task("rot_z"), lambda angle: np.eye(3) + angle).state == "wrong"
-
-
 WHOLE = [[*heading.split("  =>  "), text] for heading, text in sections_of("wrong_texts.txt")]
 
 
@@ -277,7 +245,6 @@ def test_a_whole_wrong_answer_is_told(name, words, text, capsys):
 def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypatch):
     """With the sentences for known mistakes taken away, the symptom has to speak of what is shown."""
     monkeypatch.setattr(grading, "distortions", lambda task: ())
-    monkeypatch.setattr(grading, "variants", lambda task: (), raising=False)
     known, one = task(name).slips, dataclasses.replace(task(name), slips=())
     cases, shown = one.cases(), 0
     for mistake in known:

@@ -1,4 +1,4 @@
-"""Pictures of notebook 12: their numbers against other routes; what is drawn is what was computed."""
+"""Views of notebooks 12 and 13: their numbers against other routes; what is drawn is what was computed."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -8,10 +8,11 @@ import pytest
 
 from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
+from ir50p_lab.course import fitting
 from ir50p_lab.course.draw.painter import Painter
 from ir50p_lab.course.fitting import results, views
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification import RLS, fit_joint, load_excitations, process, regressor, validate
+from ir50p_lab.identification import fit, fit_joint, load_excitations, process, regressor
 from ir50p_lab.modelling import IR50P, gravity, mass_matrix
 from ir50p_lab.signals import quintic
 
@@ -86,6 +87,7 @@ def test_payload_is_a_point_mass_at_the_tip():
 
 
 def test_the_arm_of_the_course_has_kept_motions_another_one_gets_its_own(monkeypatch):
+    views.kept_motion.cache_clear()
     assert [views.kept_motion(IR50P, k) for k in (0, 1)] == [
         load_excitations()[x] for x in ("training", "validation 1")
     ]
@@ -98,42 +100,10 @@ def test_the_arm_of_the_course_has_kept_motions_another_one_gets_its_own(monkeyp
     monkeypatch.setattr(views, "optimise_excitation", quick)
     assert views.kept_motion(replace(IR50P, name="another"), 1) == "made here"
     assert seen["table"] > 0 and seen["seed"] == 1
-
-
-def test_relative_errors_are_those_of_a_covariance(excitation):
-    percent, u = views.relative_errors(IR50P, excitation, 1 / excitation.period)
-    t = excitation.period * (np.arange(300) + 0.5) / 300
-    rows = excitation.sample(t)
-    Phi = regressor(rows[:, 0], rows[:, 1], rows[:, 2])
-    A = Phi[:, 0, [0, 1, 4, 5, 10, 11, 16]]
-    stderr = 8 * np.sqrt(np.linalg.pinv(A.T @ A)[0, 0] * 300 / 1100)
-    assert percent[0] == pytest.approx(100 * stderr / IR50P.theta_pwm[0, 0], rel=1e-6)
-    np.testing.assert_allclose(u, np.einsum("nij,ij->ni", Phi, IR50P.theta_pwm), atol=1e-9)
-
-
-def test_frequency_view(excitation):
-    view = views.FrequencyView(IR50P, excitation)
-    assert "within reach" in view.update(0.03) and "out of reach" in view.update(0.3)
+    views.kept_motion.cache_clear()
 
 
 # ---- results
-
-
-def test_learn_leaves_out_what_stands(records):
-    all_of_it, some = results.learn(records[0], delay=0.02), results.learn(records[0], delay=0.02, slow=0.05)
-    assert abs(some.theta[0, 0] / IR50P.theta_pwm[0, 0] - 1) < 0.15
-    assert not np.allclose(all_of_it.theta, some.theta)
-
-
-def test_online_signals_lead_to_the_same_parameters(records):
-    """Sample by sample with a causal filter, or afterwards with one that is not late."""
-    train, _ = records
-    signals, rls = results.OnlineSignals(), RLS()
-    for q, u in zip(train.q, train.u, strict=True):
-        rls.step(*signals.step(q, u))
-    late = results.learn(train, delay=0.02, slow=0.05).theta
-    for place in ((0, 0), (1, 2), (2, 3), (0, 10)):
-        assert rls.theta[place] == pytest.approx(late[place], rel=0.15)
 
 
 def test_cutoff_view(records):
@@ -144,17 +114,6 @@ def test_cutoff_view(records):
     assert [1.5, 1.5] in [list(line.get_xdata()) for line in view.figure.axes[1].lines]
     with pytest.raises(InputError):
         view.update(60.0)
-
-
-def test_forgetting_follows_a_payload(records, excitation):
-    loaded = recorded(excitation, 40, arm=IR50P.with_payload(0.3))
-    parts = [process(run, delay=0.02, slow=0.05) for run in (records[0], loaded)]
-    levels = [results.learn(run, delay=0.02, slow=0.05).theta[2, 3] for run in (records[0], loaded)]
-    assert levels[1] - levels[0] == pytest.approx(0.3 * IR50P.l[2] / IR50P.actuators.gain[2], rel=0.1)
-    view = results.ForgettingView(parts, levels)
-    short, long = view.run(10)[-1], view.run(1e4)[-1]
-    assert abs(short - levels[1]) < 0.5 * abs(long - levels[1])
-    assert "0.9950" in view.update(10)
 
 
 def test_spoilt_data_can_be_repaired(records):
@@ -173,21 +132,33 @@ def test_spoilt_data_can_be_repaired(records):
     assert found.inertia == pytest.approx(whole.inertia, rel=0.1)
 
 
-def test_a_curved_driver_is_seen(records):
-    steps = {"delay": 0.02, "slow": 0.05}
-    bends = []
-    for exponent in (1.0, 1.3):
-        train, valid = (results.curved(run, exponent) for run in records)
-        bends.append(results.bend(validate(results.learn(train, **steps), valid, delay=0.02)))
-    assert (np.abs(bends[0]) < 40).all() and (bends[1] > bends[0] + 25).all()
-    u = np.linspace(-200, 200, 401)[:, None] * [1, 1, 1]
-    exact = SimpleNamespace(predicted=u, residuals=0.1 * u + 30 * (u / 255) * np.abs(u / 255))
-    np.testing.assert_allclose(results.bend(exact), 30)
+def test_rows_of_a_recording_are_those_of_the_package(records, monkeypatch, tmp_path):
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    Y, u, use = fitting.columns(records[0])
+    theta, errors = fitting.fit_rows(Y, u, use)
+    motion = process(records[0], delay=0.02, slow=0.05)
+    theirs = fit(regressor(motion.q, motion.qd, motion.qdd), motion.u, use=motion.use)
+    waist = fitting.ACTS[0]
+    np.testing.assert_allclose(theta[0, waist], theirs.theta[0, waist], atol=1e-6)
+    assert np.isnan(errors[0, 2]) and (errors[0, waist] > 0).all()
+    masses = [fitting.mass_of(IR50P.theta_pwm, q) for q in (POSE, -POSE)]
+    gains = np.array(IR50P.actuators.gain)[:, None]
+    np.testing.assert_allclose(gains * masses, mass_matrix(IR50P, np.array([POSE, -POSE])), atol=1e-9)
 
 
-def test_figures_show_what_they_are_given(records):
-    figure = results.ablation_figure(["a", "b"], np.array([[60, 70, 80], [90, 91, 92.0]]), np.array([95, 96, 97.0]))
-    assert [t.get_text() for t in figure.axes[0].get_yticklabels()] == ["a", "b"]
-    best = validate(results.learn(records[0], delay=0.02, slow=0.05), records[1], delay=0.02)
-    figure = results.validation_figure(best, replace(best), (10, 20))
-    assert f"{best.fit[2]:.0f} %" in figure.axes[2].get_title()
+def test_a_motion_keeps_the_limits_or_is_none():
+    x = np.zeros((3, 11))
+    x[:, 0] = POSE
+    x[:, 1] = 0.05
+    assert fitting.waves(IR50P, x).duration == 110
+    x[0, 0] = 3.0
+    assert fitting.waves(IR50P, x) is None
+
+
+def test_the_gripper_shows_in_what_is_fitted(monkeypatch, tmp_path):
+    """Half a minute of its motion with it and without it: its weight at the elbow's column."""
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+    found = []
+    for run in (fitting.gripper_run(IR50P), fitting.bare_run(IR50P, PID(1000, 1000, 40, limit_pwm=255)).between(5, 60)):
+        found.append(fitting.fit_rows(*fitting.columns(run))[0][2, 3])
+    assert found[0] - found[1] == pytest.approx(0.3 * IR50P.l[2] / IR50P.actuators.gain[2], rel=0.1)

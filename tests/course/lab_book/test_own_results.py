@@ -98,7 +98,7 @@ def test_a_real_arm_uses_only_what_was_measured_on_it(model, recording, capsys):
     mine, other = real_bench(), real_bench()
     save_result("model", model, recording)
     save_result("model", model, other)
-    with pytest.raises(NotMeasuredError, match="12_identification"):
+    with pytest.raises(NotMeasuredError, match="13_is_the_model_good"):
         load_result("model", mine, course=lambda: model)
     assert load_result("model", simulated(9), course=lambda: "course's") == "course's"
     assert "The course's model: no model of yours was measured on simulated IR50P, unit 9" in capsys.readouterr().out

@@ -103,7 +103,7 @@ def test_any_controller_may_enter_and_attempts_are_kept(tmp_path, monkeypatch, c
     first, second = jury.contest(Mine(), "my own law"), jury.contest(student(**TUNED), "tuned")
     assert not first.won and second.value < first.value
     said = capsys.readouterr().out
-    assert "attempt 1: your best so far" in said and "decides" in said
+    assert "attempt 1: the best so far" in said and "decides" in said
     kept = lab_book.read()["contest"]
     assert [one["name"] for one in kept] == ["my own law", "tuned"]
     assert len({seed for one in kept for seed in one["seeds"]}) == 2 * jury.RUNS  # drawn anew each time

@@ -39,7 +39,7 @@ def test_sliders_move_the_students_gains():
         update, words = contest_views.sliders_of(kind(kp=(300,) * 3, ki=(50,) * 3, kd=(40,) * 3), IR50P, view)
         said[words] = update(**GAINS)(), view.recording.u.copy()
     compiled, own = said
-    assert "compiled PID runs" in compiled and "your Python runs" in own
+    assert "compiled PID runs" in compiled and "the class in Python runs" in own
     assert f"practice arms {contest.score(Half(900, 800, 5), arm=IR50P).value:.2f}" in said[own][0]
     assert "kp, ki, kd = (900, 900, 900), (800, 800, 800), (5, 5, 5)" in said[own][0]
     assert not np.allclose(said[own][1], said[compiled][1])
