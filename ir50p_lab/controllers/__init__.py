@@ -10,7 +10,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "base": ["Controller"],
-        "computed_torque": ["ComputedTorque", "FeedForward", "GravityPD"],
+        "computed_torque": ["ComputedTorque"],
         "continuous_pid": ["ContinuousPID"],
         "pid": ["PID"],
         "tuning": ["PIDGains", "amigo", "simc", "simc_integrating", "ziegler_nichols"],

@@ -33,7 +33,7 @@ class Controller:
 
     rows = ("kp", law.KP), ("ki", law.KI), ("kd", law.KD)
     tables = ()
-    takes_up = law.BUMP  # place in the state of what a change of gains must not do to u at once
+    takes_up = None  # place in the state of what keeps u as it was when gains change; None: nothing does
     kp = three(law.KP, "Proportional gains (3,).")
     ki = three(law.KI, "Integral gains (3,).")
     kd = three(law.KD, "Derivative gains (3,).")
@@ -54,7 +54,7 @@ class Controller:
         self.state[:] = 0.0
 
     def set_gains(self, kp=None, ki=None, kd=None):
-        """Change gains in the middle of a run: the command does not jump. See `PID` and `ComputedTorque` for how.
+        """Change gains in the middle of a run: that of a `PID` does not jump, its integral takes up the difference.
 
         What is left out stays. Raises InputError for gains that are negative or not finite (none is changed then).
         """
@@ -63,7 +63,7 @@ class Controller:
         before = self.kp, self.kd
         for place, value in wanted.items():
             p[place : place + 3] = value
-        if s[law.STARTED]:
+        if s[law.STARTED] and self.takes_up is not None:
             slope = s[law.SLOPE : law.SLOPE + 3]
             ahead = s[law.ERROR : law.ERROR + 3] + p[law.DELAY] * slope
             s[self.takes_up : self.takes_up + 3] += (before[0] - self.kp) * ahead + (before[1] - self.kd) * slope

@@ -1,10 +1,19 @@
-"""Computed torque (2.19), (4.6), and its smaller relatives: feed-forward with a PD, gravity compensation with a PD."""
+"""Computed torque (2.19), (4.6): the arm's own model inside the loop."""
+
+import numpy as np
 
 from ir50p_lab.controllers import law
-from ir50p_lab.controllers.model_based import ModelController
+from ir50p_lab.controllers.base import Controller, gains, unit_of
+from ir50p_lab.errors import InputError
+from ir50p_lab.inputs import number
+from ir50p_lab.modelling.arm import Arm
+from ir50p_lab.modelling.dynamics import as_theta
+from ir50p_lab.signals.reference import per_joint
+
+LIMIT_PWM = 255.0
 
 
-class ComputedTorque(ModelController):
+class ComputedTorque(Controller):
     """Linearise the arm with its own model, then place the poles of what is left    (2.19), (4.6), e = q - q_ref.
 
         u = M(q) v + C(q, qd) qd + g(q) + F = Phi(q, qd, v) theta,    v = qdd_ref - kd de/dt - kp e - ki int e dt
@@ -15,51 +24,75 @@ class ComputedTorque(ModelController):
 
     - the model: an Arm, a theta (3, 20) or (20,), or an `Estimate` of a recording; a row per joint, so that motors
       of unequal gain and PWM counts need no further care;
-    - velocity="error" filters the rate of the *error*, so that a joint that follows sees no lag of the filter;
-      "angle" filters the velocity itself, which lags behind every motion;
+    - the rate of the *error* is filtered, so that a joint that follows sees no lag of the filter;
     - friction is compensated as far as the model holds any, dry friction for the *reference's* direction, smoothed over
-      +-smooth rad/s: measured velocity changes sign with every bit of noise, and the compensation would chatter
-      (friction_sign="measured" shows it);
+      +-smooth rad/s: measured velocity changes sign with every bit of noise, and the compensation would chatter;
     - delay: s from a sample to the moment its command acts; error and reference are led ahead by as much;
-    - integral with anti-windup (it rests while its joint is limited), limits, `set_gains` without a jump of u: what
-      would be the jump fades in.
+    - integral with anti-windup (it rests while its joint is limited) and limits. `set_gains` acts at once.
 
     Args:
         model: Arm, theta or Estimate. In PWM counts if it is an Estimate in PWM, or if limit_pwm is given; else N m.
         kp, kd, ki: (3,) or one number: 1/s^2, 1/s, 1/s^3, whatever the arm.
         limit_pwm: PWM counts, scalar or (3,), default 255 for an Estimate in PWM; or limit: N m, default none.
-        smooth: rad/s, width of the smoothed sign, scalar or (3,). friction_sign: 'reference' or 'measured'.
-        velocity: 'error' or 'angle'. filter_hz: cut-off of its low pass, Hz (inf: none). position_filter_hz: cut-off
-            of a first-order low pass on q, as the thesis has (4.1.3), Hz (None: off).
-        delay: s, 0 to 1. model_velocity: velocity in C and viscous friction, 'measured' (2.19) or 'reference'.
-        period: s. g: of a theta, m/s^2, default 9.81.
+        smooth: rad/s, width of the smoothed sign, scalar or (3,). filter_hz: cut-off of the low pass on the rate of
+            the error, Hz (inf: none). delay: s, 0 to 1. period: s. g: of a theta, m/s^2, default 9.81.
 
+    Attributes: theta (3, 20) the model in `unit`; kp, ki, kd (3,); limit (3,).
     Raises InputError on bad arguments, ArmError for PWM without actuators.
     """
 
-    mode = law.LINEARISE
+    tables = (("model_theta", law.THETA),)
+
+    def __init__(
+        self,
+        model,
+        kp,
+        kd,
+        ki=0.0,
+        *,
+        limit_pwm=None,
+        limit=None,
+        smooth=0.05,
+        filter_hz=10.0,
+        delay=0.0,
+        period=0.01,
+        g=None,
+    ):
+        theta, gravity, unit, limit = model_in_unit(model, limit_pwm, limit, g)
+        super().__init__(unit, limit, period, filter_hz)
+        if number("delay", delay, ">= 0", unit="s") > 1:
+            raise InputError(f"delay = {delay!r} s: give 0 to 1 s, from a sample to the moment its command acts")
+        p = self.parameters
+        p[law.MODE], p[law.ANTI_WINDUP] = law.LINEARISE, True
+        p[law.THETA :], p[law.GRAVITY], p[law.DELAY] = theta.ravel(), gravity, delay
+        p[law.SMOOTH : law.THETA] = per_joint("smooth", smooth, ">= 0", unit="rad/s")
+        self.set_gains(gains("kp", kp), gains("ki", ki), gains("kd", kd))
+
+    def header(self):
+        """Lines for the head of a recording: gains, filter, delay, and the model as 20 numbers a joint."""
+        return {**super().header(), "delay_s": f"{self.parameters[law.DELAY]:g}", "model_unit": self.unit}
+
+    @property
+    def theta(self):
+        """The model inside, (3, 20), in `unit`."""
+        return self.parameters[law.THETA :].reshape(3, 20).copy()
 
 
-class FeedForward(ModelController):
-    """The model for the planned motion only, and a PD for the rest; the model sees nothing that is measured.
+def model_in_unit(model, limit_pwm=None, limit=None, g=None):
+    """(theta (3, 20), gravity, unit, limit) of a model: an Arm, a theta, or an Estimate, which says its own unit.
 
-        u = M(q_ref) qdd_ref + C(q_ref, qd_ref) qd_ref + g(q_ref) + F(qd_ref) - kp e - kd de/dt - ki int e dt
-
-    No measured number goes through the model, so noise and delay do not either, and it could be computed beforehand;
-    but the error is not linear: its dynamics change with the pose. Arguments as for `ComputedTorque`, but kp, kd, ki
-    are in the unit of u per rad, rad/s, rad s, as for a `PID`.
+    An Arm or a theta is in PWM counts if `limit_pwm` is given, else in N m. In PWM counts the limit is 255 if none is
+    given.
     """
-
-    mode = law.FEED_FORWARD
-
-
-class GravityPD(ModelController):
-    """PD control with gravity taken away: rests on any set point, without integral, if g is right.
-
-        u = g(q) + Tf - kp e - kd de/dt - ki int e dt,    e = q - q_ref
-
-    Stable for all positive gains with the energy as Lyapunov function (set points; an ideal arm). Arguments as for
-    `ComputedTorque` (friction is not used), but kp, kd, ki are in the unit of u per rad, rad/s, rad s.
-    """
-
-    mode = law.GRAVITY_ONLY
+    unit, bound = unit_of(limit_pwm, limit)
+    if hasattr(model, "theta") and hasattr(model, "unit"):  # an Estimate
+        if model.unit not in ("PWM", "N m"):
+            raise InputError(f"the model's unit is {model.unit!r}: fit in 'PWM' or in 'N m'")
+        if bound is not None and unit != model.unit:
+            name = "limit" if limit_pwm is None else "limit_pwm"
+            raise InputError(f"the model was fitted in {model.unit}, but {name} = {bound} is in the other unit")
+        unit, model = model.unit, model.theta
+    theta, gravity = as_theta(model, g)
+    if unit == "PWM" and isinstance(model, Arm):
+        theta = np.array(model.theta_pwm)
+    return theta, gravity, unit, LIMIT_PWM if unit == "PWM" and bound is None else bound

@@ -1,7 +1,7 @@
-"""The sampled laws as one compiled step: PID, computed torque, feed-forward, gravity compensation.
+"""The sampled laws as one compiled step: PID and computed torque.
 
-Error and its rate, prediction, integral, limits and change of gains are the same for all; the laws differ in what a
-model of the arm adds to the PID. The error is e = q - q_ref throughout.
+Error and its rate, prediction, integral and limits are the same for both; computed torque asks a model of the arm for
+the acceleration that the PID's sum stands for. The error is e = q - q_ref throughout.
 """
 
 import math
@@ -9,14 +9,14 @@ import math
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 
-PID, LINEARISE, FEED_FORWARD, GRAVITY_ONLY = 0.0, 1.0, 2.0, 3.0  # modes
+PID, LINEARISE = 0.0, 1.0  # modes
 # places in the parameter vector
 KP, KI, KD, LIMIT, PERIOD, FILTER_RATE, POSITION_RATE, RATE_OF_ANGLE, ANTI_WINDUP = 0, 3, 6, 9, 12, 13, 14, 15, 16
-MODE, REFERENCE_VELOCITY, SIGN_OF_MEASURED, DELAY, FADE_RATE, GRAVITY = 17, 18, 19, 20, 21, 22
-SMOOTH, THETA, N_PARAMETERS = 23, 26, 86
-# places in the state vector; BUMP: the jump that a change of gains would make, fading; GROWTH: of the integral, now
+MODE, DELAY, GRAVITY = 17, 18, 19
+SMOOTH, THETA, N_PARAMETERS = 20, 23, 83
+# places in the state vector; GROWTH: of the integral, now
 INTEGRAL, RATE, LAST, ERROR, SLOPE, TIME, STARTED, FILTERED = 0, 3, 6, 9, 12, 15, 16, 17
-BUMP, GROWTH, N_STATES = 20, 23, 26
+GROWTH, N_STATES = 20, 23
 
 
 @jit()
@@ -63,39 +63,26 @@ def error_ahead(p, s, i):
 
 
 @jit()
-def add_model(p, s, r, u):
-    """The command before limits from what a PID asks for, in u: through the model (2.19), or the model's part added."""
+def through_model(p, s, r, u):
+    """The command before limits from the acceleration that the error asks for, in u: inverse dynamics of it (2.19)."""
     theta = p[THETA : THETA + 60].reshape((3, 20))
     d = p[DELAY]
     # the reference when the command acts
     a, b, c = r[1, 0] + d * r[2, 0], r[1, 1] + d * r[2, 1], r[1, 2] + d * r[2, 2]
-    q2 = r[0, 1] + d * (r[1, 1] + 0.5 * d * r[2, 1])
-    q3 = r[0, 2] + d * (r[1, 2] + 0.5 * d * r[2, 2])
-    A, B, C = r[2, 0], r[2, 1], r[2, 2]
-    if p[MODE] != FEED_FORWARD:
-        q2, q3 = q2 + error_ahead(p, s, 1), q3 + error_ahead(p, s, 2)
-    sign1, sign2, sign3 = a, b, c
-    if p[SIGN_OF_MEASURED] > 0.0:
-        sign1, sign2, sign3 = a + s[SLOPE], b + s[SLOPE + 1], c + s[SLOPE + 2]
-    if p[MODE] == LINEARISE:
-        A, B, C = A + u[0], B + u[1], C + u[2]
-        u[:] = 0.0
-        if p[REFERENCE_VELOCITY] == 0.0:
-            a, b, c = a + s[SLOPE], b + s[SLOPE + 1], c + s[SLOPE + 2]
+    q2 = r[0, 1] + d * (r[1, 1] + 0.5 * d * r[2, 1]) + error_ahead(p, s, 1)
+    q3 = r[0, 2] + d * (r[1, 2] + 0.5 * d * r[2, 2]) + error_ahead(p, s, 2)
+    A, B, C = r[2, 0] + u[0], r[2, 1] + u[1], r[2, 2] + u[2]
+    dry1, dry2, dry3 = soft_sign(a, p[SMOOTH]), soft_sign(b, p[SMOOTH + 1]), soft_sign(c, p[SMOOTH + 2])
+    a, b, c = a + s[SLOPE], b + s[SLOPE + 1], c + s[SLOPE + 2]
     s2, c2 = cf.sincos(q2)
     s3, c3 = cf.sincos(q3)
     c23, s23 = c2 * c3 - s2 * s3, s2 * c3 + c2 * s3
     g2, g3 = cf.gravity_torques(theta, p[GRAVITY], c2, c23)
-    u[0] += theta[0, 16]
-    u[1] += g2 + theta[1, 17]
-    u[2] += g3 + theta[2, 18]
-    if p[MODE] == GRAVITY_ONLY:
-        return
     h1, h2, h3 = cf.coriolis_torques(theta, c2, s2, s3, c23, s23, a, b, c)
     M11, M12, M13, M21, M22, M23, M31, M32, M33 = cf.mass_terms(theta, c2, c3, c23)
-    u[0] += M11 * A + M12 * B + M13 * C + h1 + theta[0, 10] * a + theta[0, 11] * soft_sign(sign1, p[SMOOTH])
-    u[1] += M21 * A + M22 * B + M23 * C + h2 + theta[1, 12] * b + theta[1, 13] * soft_sign(sign2, p[SMOOTH + 1])
-    u[2] += M31 * A + M32 * B + M33 * C + h3 + theta[2, 14] * c + theta[2, 15] * soft_sign(sign3, p[SMOOTH + 2])
+    u[0] = M11 * A + M12 * B + M13 * C + h1 + theta[0, 10] * a + theta[0, 11] * dry1 + theta[0, 16]
+    u[1] = M21 * A + M22 * B + M23 * C + h2 + theta[1, 12] * b + theta[1, 13] * dry2 + theta[1, 17] + g2
+    u[2] = M31 * A + M32 * B + M33 * C + h3 + theta[2, 14] * c + theta[2, 15] * dry3 + theta[2, 18] + g3
 
 
 @jit()
@@ -103,9 +90,9 @@ def command(p, s, r, u):
     """The command before limits, into u."""
     for i in range(3):
         proportional = p[KD + i] * s[SLOPE + i] + p[KP + i] * error_ahead(p, s, i)
-        u[i] = -proportional - (s[INTEGRAL + i] + s[GROWTH + i]) - s[BUMP + i]
-    if p[MODE] != PID:
-        add_model(p, s, r, u)
+        u[i] = -proportional - (s[INTEGRAL + i] + s[GROWTH + i])
+    if p[MODE] == LINEARISE:
+        through_model(p, s, r, u)
 
 
 @jit()
@@ -115,10 +102,6 @@ def law_step(p, s, t, q, r, u):
     measure_error(p, s, q, r, dt)
     for i in range(3):
         s[GROWTH + i] = p[KI + i] * s[ERROR + i] * min(dt, 10 * p[PERIOD])  # what happened in a pause is not known
-    if p[MODE] != PID:
-        fade = math.exp(-p[FADE_RATE] * dt)
-        for i in range(3):
-            s[BUMP + i] = cf.not_denormal(fade * s[BUMP + i])
     command(p, s, r, u)
     wound_up = False
     for i in range(3):

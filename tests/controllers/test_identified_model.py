@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.controllers import ComputedTorque, FeedForward
+from ir50p_lab.controllers import ComputedTorque
 from ir50p_lab.course.torque.views import follow, naive_model, rms, thesis_pid, training_run
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import IR50P, mass_matrix
 from ir50p_lab.signals import sinusoid
+from tests.targets.rivals import PlannedSpeed, PushAndPD
 
 TABLES_4_5 = {"kp": (25, 9, 49), "kd": (10, 6, 14)}
 SWING = sinusoid((0.8, 0.4, 0.3), (0.5, 0.8, 1.0), offset=(0.0, 0.8, -0.8))
@@ -24,11 +25,11 @@ def unit(request):
 
 def test_the_identified_model_tracks_where_the_pid_does_not(unit):
     seed, _, model = unit
-    law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
+    law = PlannedSpeed(model.theta, **TABLES_4_5)
     ours, pid = (rms(follow(IR50P, c, SWING, 15, seed=seed), SWING) for c in (law, thesis_pid()))
     assert (ours <= (20, 50, 20)).all()
     np.testing.assert_allclose(pid, (144, 408, 165), rtol=0.1)  # Tables 4.1-4.3; checked with a second program
-    forward = FeedForward(model, (289, 225, 270), (40, 30, 30))
+    forward = PushAndPD(model.theta, (289, 225, 270), (40, 30, 30))
     assert (rms(follow(IR50P, forward, SWING, 15, seed=seed), SWING) <= (25, 50, 20)).all()
     as_thesis = ComputedTorque(model, **TABLES_4_5)  # (2.19): measured velocity in C and F
     assert (rms(follow(IR50P, as_thesis, SWING, 15, seed=seed), SWING) <= (20, 65, 20)).all()

@@ -11,7 +11,7 @@ import time
 import numpy as np
 from scipy.optimize import brentq
 
-from ir50p_lab.controllers import ComputedTorque, FeedForward, GravityPD
+from ir50p_lab.controllers import ComputedTorque
 from ir50p_lab.course.printed.control import PARAMETERS_2_1_2
 from ir50p_lab.course.torque.views import follow, rms, thesis_pid
 from ir50p_lab.errors import InputError
@@ -20,6 +20,7 @@ from ir50p_lab.modelling import IR50P, THESIS_C
 from ir50p_lab.modelling.named_arms import thesis_theta
 from ir50p_lab.signals import quintic, sinusoid
 from ir50p_lab.simulation import simulate
+from tests.targets.rivals import PlannedSpeed, PushAndPD
 from tests.targets.rows import Row, table
 
 TABLES_2_4 = {"kp": (20**2, 50**2, 50**2), "kd": (40, 100, 100)}  # Tables 2.4-2.6
@@ -109,13 +110,11 @@ def rows_bench(seeds):
         models.append(model)
         laws = {
             "PID, Tables 4.1-4.3": thesis_pid(),
-            "computed torque": ComputedTorque(model, **TABLES_4_5, model_velocity="reference"),
+            "computed torque": PlannedSpeed(model.theta, **TABLES_4_5),
             "computed torque, measured velocity in C and F": ComputedTorque(model, **TABLES_4_5, delay=0.02),
-            "feed-forward and PD": FeedForward(model, kp=(289, 225, 270), kd=(40, 30, 30)),
-            "gravity and PD": GravityPD(model, kp=(289, 225, 270), kd=(40, 30, 30)),
-            "computed torque, true parameters": ComputedTorque(
-                IR50P, **TABLES_4_5, limit_pwm=255, model_velocity="reference"
-            ),
+            "feed-forward and PD": PushAndPD(model.theta, (289, 225, 270), (40, 30, 30)),
+            "gravity and PD": PushAndPD(model.theta, (289, 225, 270), (40, 30, 30), weight_alone=True),
+            "computed torque, true parameters": PlannedSpeed(IR50P.theta_pwm, **TABLES_4_5),
         }
         for name, law in laws.items():
             for move, target in (("sinusoid", SWING), ("quintic 6 s", MOVE)):
@@ -149,7 +148,7 @@ def rows_saturation(model, seed):
     rows = []
     for slower, fits in ((1.3, True), (0.6, False)):
         duration = slower * least
-        law = ComputedTorque(model, **TABLES_4_5, model_velocity="reference")
+        law = PlannedSpeed(model.theta, **TABLES_4_5)
         error = tracked(law, seed, quintic((0, 0, 0), GOAL, duration=duration), duration).max()
         what = f"the quintic in {duration:.1f} s: computed '{'fits' if fits else 'saturates'}'"
         asked = "follows (< 100)" if fits else "cannot follow (> 100)"

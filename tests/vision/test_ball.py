@@ -308,3 +308,12 @@ def test_orange_and_pink_in_good_light_are_not_red(paint):
 def test_dark_and_noisy():
     picture = photograph(0.06 * add_ball(empty(), F, (300, 200), 24), noise=6)
     assert offset(find_balls(picture), (300, 200)) < 1.5
+
+
+@pytest.mark.parametrize(("x", "y", "r"), [(575, 42, 33), (60, 50, 40), (575, 430, 25), (320, 240, 30)])
+def test_a_drawn_disc_is_a_ball_in_a_corner_too(x, y, r):
+    """Seen as a ball, its outline there is an ellipse: that makes no corners."""
+    picture = np.full((480, 640, 3), 255, np.uint8)
+    cv2.circle(picture, (x, y), r, (220, 30, 30), -1, cv2.LINE_AA)
+    (ball,) = find_balls(cv2.GaussianBlur(picture, (0, 0), 0.8))
+    assert np.hypot(ball.x - x, ball.y - y) < 1.5

@@ -79,3 +79,10 @@ def test_pictures_give_their_camera_back(seed):
 def test_a_board_too_large_for_the_picture_has_no_poses():
     with pytest.raises(InputError, match="0 of 3 poses"):
         board_poses(bench_camera()[0], 3, board=Checkerboard((9, 60)))
+
+
+def test_points_that_were_given_are_no_checkerboard(tmp_path):
+    board = np.c_[np.mgrid[:13, :12].T.reshape(-1, 2) * 0.02, np.zeros(156)]
+    found = calibrate_corners(board, corner_sets(board, 8, seed=3), SIZE)
+    assert "given board" in str(found) and "9x6" not in str(found) and "25 mm" not in str(found)
+    assert Calibration.load(found.save(tmp_path / "given.json")).board is None

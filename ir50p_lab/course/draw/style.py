@@ -63,26 +63,6 @@ def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, share
     return figure
 
 
-def joint_columns(duration, ranges, largest, *, labels, room):
-    """Angles above, something else below, one column per joint, with an empty curve for each run to be drawn.
-
-    Args: duration: s; ranges: (3, 2) rad, of the angles; largest: end of the lower axes; labels: one for each run (a
-    legend if there are several); room: beside each range, as a share of it, and at least, rad.
-    Returns: LabFigure; the curves above and those below, [joint][run].
-    """
-    figure = new_figure(9.6, 4.2, rows=2, cols=3, sharex=True)
-    runs = list(zip(labels, JOINTS[: len(labels)], strict=True))
-    curves = [[ax.plot([], [], color=colour, label=label)[0] for label, colour in runs] for ax in figure.axes]
-    for above, below, (low, high) in zip(figure.axes[:3], figure.axes[3:], ranges, strict=True):
-        beside = max(room[0] * (high - low), room[1])
-        above.set(xlim=(0, duration), ylim=(low - beside, high + beside))
-        below.set(ylim=(-largest, largest), xlabel="time [s]")
-    figure.axes[0].set_ylabel("angle [rad]")
-    if len(labels) > 1:
-        figure.axes[0].legend(fontsize=8, loc="lower right")
-    return figure, curves[:3], curves[3:]
-
-
 def subplots(*size, **options):
     """Figure and axes of `new_figure`, for unpacking: `figure, left, right = subplots(cols=2)`."""
     figure = new_figure(*size, **options)

@@ -29,7 +29,7 @@ NUMBERS = (
     ),
     Number(
         "ct-4",
-        "14_computed_torque",
+        "15_on_the_bench",
         "the highest constant speed of joint 1 of the IR50P (row 1 of IR50P.theta_pwm) at 255 counts, level, no load",
         (_FULL - _FC - _TF) / _D,
         unit="rad/s",

@@ -1,11 +1,11 @@
-"""Figures of notebook 14: error dynamics, robustness, tracking beside the reference; and the runs behind them."""
+"""Notebooks 14 and 15: the map of robustness, the thesis' PID and model, and how late a joint is."""
 
 import numpy as np
 from matplotlib.colors import LogNorm
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.draw.style import JOINTS, SETPOINT, colour_map, joint_columns, subplots
+from ir50p_lab.course.draw.style import JOINTS, colour_map, subplots
 from ir50p_lab.course.fitting.views import kept_motion
 from ir50p_lab.identification import fit, process, regressor
 
@@ -77,32 +77,3 @@ class RobustnessView:
         for j, line in enumerate(self._lines):
             line.set_data(run.t, -1e3 * run.error[:, j])
         return "RMS error: " + " / ".join(f"{x:.3g}" for x in 1e3 * run.rms_error) + " mrad"
-
-
-class TrackingView:
-    """Angles over their reference (dashed) above, tracking errors below, a column per joint (Figure 4.13).
-
-    Args: reference; seconds: of it that are drawn; labels: one for each run; error_max: mrad, of the lower axes.
-    Attributes: figure. `update(*runs)`: anything with t (n,) s and q (n, 3) rad, one per label.
-    """
-
-    def __init__(self, reference, seconds, labels, *, error_max):
-        self._reference, t = reference, np.linspace(0, seconds, 200)
-        wanted = reference.sample(t)[:, 0]
-        ranges = np.stack([wanted.min(axis=0), wanted.max(axis=0)], axis=1)
-        self.figure, self._q, self._e = joint_columns(seconds, ranges, error_max, labels=labels, room=(0.35, 0.1))
-        for j, (above, below) in enumerate(zip(self.figure.axes[:3], self.figure.axes[3:], strict=True)):
-            above.plot(t, wanted[:, j], **SETPOINT)
-            above.set_title(f"joint {j + 1}")
-            below.set_xlabel("time [s]  -  simulated")
-        self.figure.axes[3].set_ylabel("q - q_ref [mrad]")
-
-    def update(self, *runs):
-        """Draw one run per label, every second sample. Returns the figure."""
-        for k, run in enumerate(runs):
-            t, q = run.t[::2], run.q[::2]
-            error = 1e3 * (q - self._reference.sample(t)[:, 0])
-            for j in range(3):
-                self._q[j][k].set_data(t, q[:, j])
-                self._e[j][k].set_data(t, error[:, j])
-        return self.figure

@@ -112,6 +112,10 @@ def _other_shape(outline, filled):
     angle, off = ANGLES[outline.on], outline.off[outline.on]
     if len(off) < _ENOUGH:
         return ""
+    ellipse = np.column_stack(
+        [np.ones(len(off)), np.cos(2 * angle), np.sin(2 * angle)]
+    )  # a disc, or a ball in a corner
+    off = off - ellipse @ np.linalg.lstsq(ellipse, off)[0]
     for corners in range(5, 11):
         A = np.column_stack([np.ones(len(off)), np.cos(corners * angle), np.sin(corners * angle)])
         wave, rest, *_ = np.linalg.lstsq(A, off)

@@ -13,7 +13,7 @@ from ir50p_lab.vision.calibration import doubts
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.calibration_result import LENS, NAMES, Calibration, View
 from ir50p_lab.vision.calibration.corners import find_checkerboard
-from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, fit_lens, height
+from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, fit_lens, halves_agree, heights
 from ir50p_lab.vision.calibration.reject_reasons import NotUsable, Reason, Rejected
 from ir50p_lab.vision.image import list_images, load_image, to_grey
 
@@ -110,10 +110,15 @@ def _calibrate(found, points, size, lens, rejected, board):
         fitted = fit(points, [xy for *_, xy in found], size, lens, fitted.K)
     pixels, said = [xy for *_, xy in found], []
     if board is not None and not doubt:
-        fitted = fit_bent(fitted, pixels, size, lens, board.pattern[0])
+        freed = fit_bent(fitted, pixels, size, lens, board.pattern[0])
+        if freed.bent and halves_agree(pixels, fitted, size, lens, board.pattern[0]):
+            fitted = freed
     if fitted.bent:
-        bend = 1000 * height(fitted.points[0])
-        said.append(f"the board is bent by {bend:.1f} mm: its shape was estimated, too. Glue it to a plate and repeat")
+        bend = 1000 * np.ptp(heights(fitted.points[0]))
+        said.append(
+            f"the board is bent by {bend:.1f} mm: its shape was estimated, too, and the errors may be two to three "
+            "times as large as given. Glue it to a plate and repeat"
+        )
     covariance, sigma, contradiction = errors(fitted, lens)
     if contradiction > _CONTRADICT:
         said.append("the views contradict each other: two cameras, or was zoom, focus or the board changed?")
@@ -132,7 +137,7 @@ def _calibrate(found, points, size, lens, rejected, board):
         views=views,
         rejected=tuple(sorted(rejected, key=lambda one: one.index)),
         size=size,
-        board=board or Checkerboard(),
+        board=board,
         model=lens,
         sigma=sigma,
     )

@@ -51,13 +51,14 @@ class Calibration:
     distortion     k1, k2, p1, p2, k3 as in `Pinhole`; 0 where not estimated                                (5,)
     rms            root mean square distance between corners and model: sqrt(sum |e|^2 / N)                 px
     stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two kinds               dict
-                   (`fit.errors`); nan where not estimated
+                   (`fit.errors`); nan where not estimated. Of a bent board two to three times too small
+                   (halves of one set of photographs differed by 2.3 of them, root mean square)
     covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
     views          View of each picture used                                                                tuple
     rejected       Rejected: each picture not used, with a reason                                           tuple
     warnings       doubts about it, as sentences                                                            tuple
     size           (width, height) of the pictures                                                          px
-    board          Checkerboard
+    board          Checkerboard; None where the points were given
     model          lens coefficients that were estimated, such as ("k1", "k2")                              tuple
     sigma          standard deviation of a corner in x or y, from the residuals                             px
     ============== ======================================================================================== =========
@@ -72,7 +73,7 @@ class Calibration:
     warnings: tuple = ()
     size: tuple = (640, 480)
     covariance: np.ndarray = field(default_factory=lambda: np.full((9, 9), np.nan), repr=False)
-    board: Checkerboard = field(default_factory=Checkerboard)
+    board: Checkerboard | None = field(default_factory=Checkerboard)
     model: tuple = ()
     sigma: float = np.nan
 
@@ -112,7 +113,7 @@ class Calibration:
 
     def __str__(self):
         lines = [
-            f"{self.size[0]}x{self.size[1]} camera from {len(self.views)} pictures of a {self.board}, "
+            f"{self.size[0]}x{self.size[1]} camera from {len(self.views)} pictures of a {self.board or 'given board'}, "
             f"rms {self.rms:.3f} px"
         ]
         for name, value in self.values.items():

@@ -46,9 +46,9 @@ def load(calibration_class, view_class, path, size=None):
         raise CalibrationError(f"{path} cannot be read ({error}): calibrate the camera, and save") from None
     try:
         found = json.loads("".join(json.loads(text)["details"]))
-        board = found["board"] | {"pattern": tuple(found["board"]["pattern"])}
+        board = found["board"]
         changed = {
-            "board": Checkerboard(**board),
+            "board": board and Checkerboard(**board | {"pattern": tuple(board["pattern"])}),
             "views": tuple(view_class(**{name: _array(one[name]) for name in one}) for one in found["views"]),
             "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
         }

@@ -15,6 +15,8 @@ _BENT = 0.75  # variance of residuals with every corner free over that with a fl
 _GAUGE = 7  # gauge freedoms of a free board: position 3, rotation 3, scale 1
 _ANOTHER = 0.75  # median residual of a view with another lens over that with the one asked for: if less, it is another
 _WIDE = np.deg2rad(40)  # if no corner lies farther off the axis, a fisheye hardly differs from the lens of the model
+_HALF = 5  # views: with fewer in a half, the halves are not compared
+_ALIKE = 0.5  # cosine between the heights of two halves: if it is less, they show different boards
 _UNKNOWN = 1e-11  # if an eigenvalue of the scaled normal matrix is smaller, it is rounding: something is undetermined
 _FISHEYE = (
     "a fisheye: its outermost corners lie {:.0f} degrees off the axis, and are {:.2g} px off this model, {:.2g} px off "
@@ -136,10 +138,24 @@ def fit_bent(flat, pixels, size, lens, columns):
     return bent if bent.squares / bent.freedom < _BENT * flat.squares / flat.freedom else flat
 
 
-def height(points):
-    """Bend of a board, m: between its points (n, 3) farthest above and below the plane nearest to them all."""
+def halves_agree(pixels, flat, size, lens, columns):
+    """Tell whether every second view shows the board bent as the others do; True where they are too few to tell.
+
+    What no lens explains can look like a bend; then each half of the views finds another.
+    """
+    shapes = []
+    for part in (slice(0, None, 2), slice(1, None, 2)):
+        if len(pixels[part]) < _HALF:
+            return True
+        shapes.append(fit_bent(fit(flat.points[part], pixels[part], size, lens), pixels[part], size, lens, columns))
+    one, other = (heights(each.points[0]) for each in shapes)
+    return bool(one @ other > _ALIKE * np.linalg.norm(one) * np.linalg.norm(other))
+
+
+def heights(points):
+    """Height of the points of a board (n, 3) above the plane nearest to them all, m."""
     plane = np.column_stack([points[:, :2], np.ones(len(points))])
-    return float(np.ptp(points[:, 2] - plane @ np.linalg.lstsq(plane, points[:, 2], rcond=None)[0]))
+    return points[:, 2] - plane @ np.linalg.lstsq(plane, points[:, 2], rcond=None)[0]
 
 
 def errors(found, lens):

@@ -16,21 +16,6 @@ from ir50p_lab.simulation import simulate
 MOVE = quintic((0, 0, 0), (0.5, 0.4, -0.4), duration=1)
 
 
-@pytest.fixture(scope="module")
-def run():
-    return simulate(THESIS_RODS, ComputedTorque(THESIS_RODS, 25, 10), MOVE, q0=(0.1, 0, 0), duration=1)
-
-
-def test_tracking_view_draws_angles_and_errors(run):
-    view = views.TrackingView(MOVE, 1, ("a", "b"), error_max=300)
-    view.update(run, run)
-    for joint in range(3):
-        above, below = view.figure.axes[joint], view.figure.axes[3 + joint]
-        assert any(np.array_equal(line.get_ydata(), run.q[::2, joint]) for line in above.lines)
-        np.testing.assert_allclose(below.lines[1].get_ydata(), -1e3 * run.error[::2, joint], atol=1e-9)
-        assert "[rad]" in view.figure.axes[0].get_ylabel() and "simulated" in below.get_xlabel()
-
-
 def test_robustness_view():
     def of(scale, speed):
         return simulate(THESIS_RODS, ComputedTorque(scale * THESIS_RODS.theta, speed**2, 2 * speed), MOVE, duration=1)

@@ -1,0 +1,105 @@
+"""Functions of 14 and 15 that stay in their notebook: the course's, what each is tried on, typical slips."""
+
+import numpy as np
+
+from ir50p_lab.course.checking.task import Mistake, notebook_tasks
+from ir50p_lab.course.fitting.functions.regressor import regressor
+from ir50p_lab.modelling import gravity, inverse_dynamics, load_arm
+
+
+def carry(q):
+    """The counts (3,) that hold the weight in the pose q."""
+    return gravity(load_arm(), q) / load_arm().actuators.gain
+
+
+def cancel(x, v):
+    """The push with which the pendulum in the state x (angle, speed) accelerates with v."""
+    return v + 9.81 * np.sin(x[0]) + 0.2 * x[1]
+
+
+def model(q, qd, qdd):
+    """The torques (3,) N m that a motion takes, without friction."""
+    return inverse_dynamics(load_arm().without_friction(), q, qd, qdd)
+
+
+def pushes(theta, q, qd, qdd, direction):
+    """The counts (3,) of a motion, by the rows of a theta (3, 20)."""
+    return np.sum(regressor(q, qd, qdd, direction) * theta, axis=1)
+
+
+def into(q, qd, plan):
+    """What the model is given on the bench: place, speed and direction."""
+    return q, plan[1], np.sign(plan[1])
+
+
+def planned(model, plan):
+    """The counts (3,) that the plan takes, by a model; nothing that is measured goes in."""
+    return model(plan[0], plan[1], plan[2], np.sign(plan[1]))
+
+
+# ------------------------------------------------------------------------------------------------------ tried on
+def _rows(*shape):
+    return np.random.default_rng(140).uniform(-1, 1, (5, *shape))
+
+
+def _theta_states():
+    return [(10 * theta, *states) for theta, states in zip(_rows(3, 20), _rows(4, 3), strict=True)]
+
+
+def made_up(q, qd, qdd, direction):
+    """a made-up arm"""
+    return 3 * np.cos(q) + 40 * qd + 5 * qdd + 11 * direction
+
+
+# ------------------------------------------------------------------------------------------------- typical slips
+def _in_torques(q):
+    return gravity(load_arm(), q)
+
+
+def _other_sign(x, v):
+    return v - 9.81 * np.sin(x[0]) - 0.2 * x[1]
+
+
+def _no_brake(x, v):
+    return v + 9.81 * np.sin(x[0])
+
+
+def _no_weight(q, qd, qdd):
+    return model(q, qd, qdd) - gravity(load_arm(), q)
+
+
+def _no_speeds(q, qd, qdd):
+    return model(q, 0 * qd, qdd)
+
+
+def _one_row(theta, q, qd, qdd, direction):
+    return regressor(q, qd, qdd, direction) @ theta[0]
+
+
+def _measured(q, qd, plan):
+    return q, qd, np.sign(qd)
+
+
+_TORQUES = "that is the torque, in N m: a motor takes counts"
+_SIGNS = "the pendulum is pushed twice by what should be cancelled: the signs are the other way round"
+_BRAKE = "its brake, 0.2 times the speed, is not cancelled"
+_WEIGHT = "at rest it carries nothing: the weight is missing"
+_SPEEDS = "what the speeds of the joints do to each other is missing"
+_ROW = "all joints use the first row of theta: each has a row of its own"
+_BOTH = "speed and direction are still the measured ones"
+
+TASKS = notebook_tasks(
+    __file__,
+    carry=(carry, lambda: [(q,) for q in _rows(3)], "the counts, three numbers", {
+        "slips": (Mistake(_in_torques, _TORQUES),), "tolerance": 1e-3, "unit": "counts"}),
+    cancel=(cancel, lambda: [(x, 3 * v) for x, v in zip(_rows(2), _rows(), strict=True)], "the push, one number", {
+        "slips": (Mistake(_other_sign, _SIGNS), Mistake(_no_brake, _BRAKE))}),
+    model=(model, lambda: [tuple(row) for row in _rows(3, 3)], "the torques, three numbers", {
+        "slips": (Mistake(_no_weight, _WEIGHT), Mistake(_no_speeds, _SPEEDS)), "tolerance": 1e-3, "unit": "N m"}),
+    pushes=(pushes, _theta_states, "the counts, three numbers", {
+        "slips": (Mistake(_one_row, _ROW),), "unit": "counts"}),
+    into=(into, lambda: [(*one[:2], one[2:]) for one in _rows(5, 3)], "place, speed and direction, three vectors", {
+        "results": ("place", "speed", "direction"), "slips": (Mistake(_measured, _BOTH),)}),
+    planned=(planned, lambda: [(made_up, plan) for plan in _rows(3, 3)], "the counts, three numbers", {
+        "unit": "counts"}),
+)  # fmt: skip
