@@ -17,7 +17,7 @@ from test_runs import assert_solved
 DRIVING = {
     path.stem: path
     for path in NOTEBOOKS
-    if re.search(r"\bwith connect\(|\barm_that_answers\(", path.read_text(encoding="utf-8"))
+    if re.search(r"\bwith connect\(|\barm_that_answers\(|\bviews\.(?:go|follow)\(", path.read_text(encoding="utf-8"))
 }
 
 PLUG_IN = f"""
@@ -71,7 +71,9 @@ def test_on_a_replay(name, tmp_path):
 )
 def test_on_the_board(name, tmp_path):
     """Found, driven, and never left for the simulated arm."""
-    needs_results = re.search(r"\barm_that_answers\(\"", DRIVING[name].read_text(encoding="utf-8").replace("\\", ""))
+    needs_results = re.search(
+        r"\barm_that_answers\(\"|\bviews\.(?:go|follow)\(", DRIVING[name].read_text(encoding="utf-8").replace("\\", "")
+    )
     said = said_by(DRIVING[name], tmp_path, PLUG_IN + ("emulated_bench.measure()" if needs_results else ""))
     assert "Bench: board on emulated" in said and "The simulated arm instead" not in said
 
