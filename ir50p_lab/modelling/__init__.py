@@ -13,6 +13,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "chain": ["dh_matrix", "dh_table", "forward_kinematics", "frames", "transform"],
         "differential": ["jacobian"],
         "dynamics": ["coriolis_matrix", "energy", "forward_dynamics", "gravity", "inverse_dynamics", "mass_matrix"],
+        "export": ["export_arm"],
         "friction": ["Friction", "friction_torque"],
         "ik": ["inverse_kinematics", "reachability"],
         "inertia": ["Body", "cylinder", "integrate_solid", "second_moment_tensor", "tube"],

@@ -13,7 +13,8 @@ from itertools import pairwise
 import nbformat
 from notebook_runner import FOLDER, REWRITTEN, ROOT
 
-from ir50p_lab.course.robot.catalogue import function_of, is_function, of_notebook, stays, task
+from ir50p_lab.course.checking.tasks import of_notebook, task
+from ir50p_lab.course.robot.catalogue import function_of, is_function, stays
 
 README = ROOT / "README.md"
 PANEL = re.compile(r"^(?:\w+\.)?(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)

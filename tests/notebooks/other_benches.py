@@ -65,7 +65,7 @@ def test_on_a_replay(name, tmp_path):
         "11_bench_drive",
         "12_identification",
         "13_is_the_model_good",
-        "14_computed_torque",
+        "15_on_the_bench",
         "18_vision_guided_reaching",
     ],
 )

@@ -2,7 +2,7 @@
 
 import re
 
-from ir50p_lab.course.robot.catalogue import of_notebook
+from ir50p_lab.course.checking.tasks import of_notebook
 
 _NO_CIRCLE_YET = re.compile(r"^    \.\.\..*\n    return \.\.\.\n", re.M)
 #: What in it, by what, words of what its cell says then.

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.checking.tasks import task
 
 FOLDER = Path(__file__).parents[1] / "solutions"
 ORDER = (

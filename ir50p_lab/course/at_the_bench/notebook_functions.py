@@ -4,7 +4,10 @@ import numpy as np
 
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.course.checking.task import Mistake, notebook_tasks
-from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.kinematics.functions.frames import frames
+from ir50p_lab.course.kinematics.functions.jacobian import jacobian
+from ir50p_lab.course.kinematics.functions.reach import reach
+from ir50p_lab.course.motion.functions.quintic import quintic
 from ir50p_lab.modelling import load_arm
 
 CENTRE, RADIUS, LAP = np.array([0.42, -0.15, 0.13]), 0.06, 6.5  # m, m, s, as in the notebook
@@ -16,7 +19,6 @@ def circle(t):
 
 
 def _circle(t, *, growth=1.0, pace=1.0, turn=1.0, at=None):
-    reach, jacobian, frames, quintic = (task(name).right for name in ("reach", "jacobian", "frames", "quintic"))
     arm = load_arm()
     l, limits = np.array(arm.l), np.clip([arm.q_min, arm.q_max], -np.pi, np.pi)
     first = reach(CENTRE + np.array([RADIUS, 0, 0]), l, rest_pose(arm), limits)

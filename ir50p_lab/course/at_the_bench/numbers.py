@@ -1,6 +1,6 @@
 """Numbers of notebooks 10 and 11: the lag of a filter, what stiction leaves."""
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import low_pass_lag
 

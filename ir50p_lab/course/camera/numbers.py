@@ -1,6 +1,6 @@
 """Numbers of notebook 17: a ball that is not on the plane."""
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 
 # calib-4: a ball's centre read as if it lay on the table.
 _LENS_HEIGHT, _AWAY, _RADIUS = 0.6, 0.5, 0.03  # m; _AWAY: of the ball's centre from the foot of the lens

@@ -12,9 +12,9 @@ import re
 import numpy as np
 
 from ir50p_lab.course.checking.explain_error import ROOM
-from ir50p_lab.course.robot import student_package as folder
+from ir50p_lab.course.checking.tasks import task as task_of_name
+from ir50p_lab.course.robot import student_package
 from ir50p_lab.course.robot.catalogue import ORDER
-from ir50p_lab.course.robot.catalogue import task as find
 from ir50p_lab.course.robot.source import GIVEN, Source
 
 _ALLOWED = {"numpy", "math", "cmath", "collections", "dataclasses", "functools", "itertools", "operator", "typing"}
@@ -73,7 +73,7 @@ def made(source, task):
     """The function of a Source with NumPy, math and the earlier functions, and nothing of the notebook."""
     room = {"np": np, "numpy": np, "math": math}
     for name in source.calls:
-        room[name] = folder.load(name) if folder.is_there(name) else find(name).right
+        room[name] = student_package.load(name) if student_package.is_there(name) else task_of_name(name).right
     file = f"{ROOM} {task.name}>"
     linecache.cache[file] = (len(source.text), None, source.text.splitlines(keepends=True), file)
     exec(compile(source.text, file, "exec"), room)

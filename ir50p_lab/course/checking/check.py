@@ -11,9 +11,10 @@ from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.in_notebook import check_here
 from ir50p_lab.course.checking.note import Note, ended, show
 from ir50p_lab.course.checking.numbers import check_number
+from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.lab_book.progress import record
-from ir50p_lab.course.robot import student_package as folder
-from ir50p_lab.course.robot.catalogue import ORDER, is_function, stays, work_on
+from ir50p_lab.course.robot import student_package
+from ir50p_lab.course.robot.catalogue import ORDER, is_function, stays, work_at
 from ir50p_lab.errors import InputError
 
 _BEFORE_SCRAMBLE, _BEFORE_LOAN = 3, 6  # different failing sources
@@ -32,7 +33,8 @@ def check(name, answer=...):
     if not is_function(str(name)):
         return check_number(name, answer)
     try:
-        wanted = work_on(name)
+        wanted = task(name)
+        work_at(name)
     except InputError as error:
         return _show("open", name, str(error))
     if answer is ...:
@@ -54,15 +56,19 @@ def reset(name):
     """Begin a function again: yours goes to my_robot/old, the course's stands in."""
     if not is_function(str(name)):
         raise InputError(f"{name!r} is no function of my_robot; they are {', '.join(ORDER)}")
-    folder.put_aside(name)
+    student_package.put_aside(name)
     lab_book.change(lambda book: book["attempts"].pop(name, None))
-    print(f"{name}: begun again; what you had is in {folder.folder() / 'old'}")
+    print(f"{name}: begun again; what you had is in {student_package.folder() / 'old'}")
 
 
 def _keep(source, wanted, remark):
-    whole = "." in wanted.name and folder.is_there(wanted.function) and not folder.on_loan(wanted.function)
+    whole = (
+        "." in wanted.name
+        and student_package.is_there(wanted.function)
+        and not student_package.on_loan(wanted.function)
+    )
     try:
-        lent = folder.keep(source, wanted)
+        lent = student_package.keep(source, wanted, task)
         record(wanted.name)
     except (OSError, lab_book.LabBookError) as error:
         return _show("right", wanted.name, f"right, but it could not be kept: {error}")
@@ -77,7 +83,7 @@ def _beside(source, wanted):
     """Both listings, and both speeds of a function."""
     title = "yours beside the course's"
     if wanted.cases is not None:
-        case, both = wanted.cases()[0], (folder.load(wanted.name), wanted.right)
+        case, both = wanted.cases()[0], (student_package.load(wanted.name), wanted.right)
         speeds = [min(timeit.repeat(lambda f=f: f(*case), number=20, repeat=3)) / 20 * 1e6 for f in both]
         title += f": {speeds[0]:.0f} and {speeds[1]:.0f} microseconds a call"
     return [(title, f"# yours\n{source.text}\n\n# the course's, without its checks\n{wanted.loan}")]
@@ -98,8 +104,10 @@ def _wrong(source, wanted, result):
     except lab_book.LabBookError as error:
         says += f" (This try was not counted: {error}.)"
     more = [("one input that fails", result.example)] if result.example else []
-    if tries >= _BEFORE_LOAN and not (folder.is_there(wanted.name) or folder.is_there(wanted.function)):
-        folder.lend(wanted)
+    if tries >= _BEFORE_LOAN and not (
+        student_package.is_there(wanted.name) or student_package.is_there(wanted.function)
+    ):
+        student_package.lend(wanted, task)
         says += (
             f" The course lends you its {wanted.name}, so that you can go on; it is marked as a loan in your report."
         )

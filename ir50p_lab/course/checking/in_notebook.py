@@ -5,7 +5,7 @@ import inspect
 from ir50p_lab.course.checking.cell import has_dots
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.note import Note, ended, show
-from ir50p_lab.course.robot.catalogue import of_notebook
+from ir50p_lab.course.checking.tasks import of_notebook
 
 
 def check_here(name, function):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P, gravity, jacobian
 
 # dyn-6: a motor with a rotor of 2e-5 kg m^2 and any gear turns a load of 0.098 kg m^2.

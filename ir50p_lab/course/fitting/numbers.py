@@ -1,6 +1,6 @@
 """Numbers of notebook 12: a step of recursive least squares, what a clamped joint hides."""
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 
 # ident-1: one parameter, one sample.
 _THETA, _P, _PHI, _Y = 2.0, 0.5, 3.0, 9.0

@@ -1,6 +1,6 @@
 """Numbers of notebook 16: a radius in pixels."""
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 
 # image-4: the ball of 4.5.3 before a webcam.
 _F, _BALL, _AWAY = 700.0, 0.030, 0.80  # pixels, m, m

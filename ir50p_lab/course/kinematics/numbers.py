@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P, jacobian, rot_z
 
 # pose-2: at the singular middle angle +90 degrees of the sequence XYZ, R depends on the sum of the outer angles.

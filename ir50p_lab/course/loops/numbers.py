@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import fsolve
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import THESIS_A, gravity
 
 # pid-1: what a spring of stiffness kp leaves under the weight of the thesis' arm.

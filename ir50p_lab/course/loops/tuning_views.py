@@ -5,11 +5,11 @@ from itertools import pairwise
 import numpy as np
 
 from ir50p_lab.controllers import simc_integrating
+from ir50p_lab.course import my_robot
 from ir50p_lab.course.checking.calling import Failed, array_like
 from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.course.draw.widgets import live, slider
-from ir50p_lab.course.robot import my_robot
 from ir50p_lab.identification import FOPDT
 
 _RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})

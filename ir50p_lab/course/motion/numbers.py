@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import Actuators
 
 # traj-1: the shortest quintic that keeps each joint below a speed.

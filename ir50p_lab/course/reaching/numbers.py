@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P, jacobian
 
 # reach-3: one count of joint 2 in a pose over a ball.

@@ -15,8 +15,8 @@ from ir50p_lab.course.robot.source import Source
 _LOAN = "# on loan from the course"
 _STAGE = ", stage "
 _PACKAGE = "my_robot"
-_loaded = {"stamp": None}
-fresh = {}  # what `my_robot` has just looked up; empty when a function was kept or put aside
+_import_state = {"stamp": None}
+lookup_cache = {}  # what `my_robot` has just looked up; empty when a function was kept or put aside
 
 
 def folder() -> Path:
@@ -42,19 +42,17 @@ def on_loan(name):
     return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
 
 
-def keep(source, task, *, loan=""):
+def keep(source, task, find, *, loan=""):
     """Write a function with its small test, and the list of what there is. What was there before goes to `old`.
 
-    Functions that it calls and that are not there yet come along on loan. Returns their names. Raises OSError: of a
-    function all files are written, or none.
+    Functions that it calls and that are not there yet come along on loan; find: gives the Task of one by its name.
+    Returns their names. Raises OSError: of a function all files are written, or none.
     """
-    from ir50p_lab.course.robot.catalogue import task as find
-
     folder().mkdir(parents=True, exist_ok=True)
     lent = []
     for name in source.calls:
         if not is_there(name):
-            lent += [name, *lend(find(name))]
+            lent += [name, *lend(find(name), find)]
     stage = f"{_STAGE}{task.name}" if "." in task.name else ""
     head = f"{loan or '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
     module, test, package = path_of(source.name), folder() / f"test_{source.name}.py", folder() / "__init__.py"
@@ -69,13 +67,13 @@ def keep(source, task, *, loan=""):
         for path in texts:
             _put_back(path, before.get(path))
         raise
-    fresh.clear()
+    lookup_cache.clear()
     return lent
 
 
-def lend(task):
+def lend(task, find):
     """Write the course's solution of a function, marked as on loan. Returns what else came along."""
-    return keep(Source(task.function, task.loan, _calls(task)), task, loan=_LOAN)
+    return keep(Source(task.function, task.loan, _calls(task)), task, find, loan=_LOAN)
 
 
 def put_aside(name):
@@ -87,7 +85,7 @@ def put_aside(name):
     path.unlink()
     (folder() / f"test_{name}.py").unlink(missing_ok=True)
     _write(folder() / "__init__.py", _exports())
-    fresh.clear()
+    lookup_cache.clear()
 
 
 def _lay_by(name, content):
@@ -108,7 +106,7 @@ def load(name):
     """The function from the folder, read again when a file has changed. What is wrong in a file is raised."""
     files = sorted(folder().glob("_*.py"))
     stamp = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
-    if _loaded["stamp"] != (folder(), stamp):
+    if _import_state["stamp"] != (folder(), stamp):
         for module in [one for one in sys.modules if one.partition(".")[0] == _PACKAGE]:
             del sys.modules[module]
         spec = importlib.util.spec_from_file_location(
@@ -118,7 +116,7 @@ def load(name):
         sys.modules[_PACKAGE] = package
         spec.loader.exec_module(package)
         cloudpickle.register_pickle_by_value(package)  # another process has no such module
-        _loaded["stamp"] = (folder(), stamp)
+        _import_state["stamp"] = (folder(), stamp)
     return getattr(sys.modules[_PACKAGE], name)
 
 

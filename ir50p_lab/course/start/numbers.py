@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P, mass_matrix
 
 # start-5: the waist of the IR50P pushed from rest, shoulder and elbow folded.

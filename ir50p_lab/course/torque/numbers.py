@@ -1,6 +1,6 @@
 """Numbers of notebook 14: an error that stays, a top speed."""
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P
 
 # ct-3: one joint whose weight the model has wrong.

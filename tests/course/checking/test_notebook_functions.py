@@ -5,10 +5,11 @@ import pytest
 from cells import cell
 
 from ir50p_lab.course import badge_of, check, claim, measured, solution
+from ir50p_lab.course.checking.tasks import of_notebook
 from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.kinematics.functions.jacobian import jacobian
 from ir50p_lab.course.lab_book import predictions
-from ir50p_lab.course.robot.catalogue import _HERE, of_notebook
+from ir50p_lab.course.robot.catalogue import IN_NOTEBOOK
 from ir50p_lab.modelling import IR50P, forward_dynamics, mass_matrix
 
 WRONG = [
@@ -72,7 +73,7 @@ def written(name, body):
     return function
 
 
-@pytest.mark.parametrize("name", _HERE)
+@pytest.mark.parametrize("name", IN_NOTEBOOK)
 def test_the_courses_own_is_right_and_its_lines_are_known(capsys, name):
     task = of_notebook(name)
     assert check(name, task.right) is task.right
@@ -89,7 +90,7 @@ def test_a_wrong_one_is_refused(capsys, name, body, words):
     assert "not yet: " in says and words in says and "traceback" not in says.lower()
 
 
-@pytest.mark.parametrize("name", _HERE)
+@pytest.mark.parametrize("name", IN_NOTEBOOK)
 def test_each_typical_slip_has_its_sentence(capsys, name):
     for slip in of_notebook(name).slips:
         check(name, slip.wrong)

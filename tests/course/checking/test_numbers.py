@@ -9,7 +9,8 @@ import pytest
 import sympy
 
 from ir50p_lab.course import check, solution
-from ir50p_lab.course.checking.numbers import Number, grade
+from ir50p_lab.course.checking.number import Number
+from ir50p_lab.course.checking.numbers import grade_number
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import PROJECT
 
@@ -67,13 +68,13 @@ class Hostile:
     ],
 )
 def test_a_wrong_form_is_named(answer, words):
-    note = grade(VECTOR, answer)
+    note = grade_number(VECTOR, answer)
     assert note.state == "unreadable"
     assert words in note.text
 
 
 def test_an_object_that_raises_is_no_error():
-    assert grade(VECTOR, Hostile()).text == "found an object of type Hostile; expected 3 numbers in m."
+    assert grade_number(VECTOR, Hostile()).text == "found an object of type Hostile; expected 3 numbers in m."
 
 
 @pytest.mark.parametrize(
@@ -92,14 +93,14 @@ def test_an_object_that_raises_is_no_error():
     ],
 )
 def test_what_is_said(number, answer, state, words):
-    note = grade(number, answer)
+    note = grade_number(number, answer)
     assert note.state == state, note.text
     assert words in note.text
 
 
 @pytest.mark.parametrize("answer", [[1.0001, 2, 3.5], [1.2, 2.2, 3.3]])
 def test_what_is_far_off_is_not_called_close(answer):
-    assert "close" not in grade(VECTOR, answer).text
+    assert "close" not in grade_number(VECTOR, answer).text
 
 
 @pytest.mark.parametrize(
@@ -114,7 +115,7 @@ def test_what_is_far_off_is_not_called_close(answer):
     ],
 )
 def test_a_right_answer_in_another_form(number, answer):
-    note = grade(number, answer)
+    note = grade_number(number, answer)
     assert note.state == "right" and note.text == f"right. {number.why}"
 
 

@@ -13,7 +13,8 @@ from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking import grade as grading
 from ir50p_lab.course.checking.calling import call, given
 from ir50p_lab.course.checking.cell import CannotTake, take
-from ir50p_lab.course.robot.catalogue import task, written
+from ir50p_lab.course.checking.tasks import task
+from ir50p_lab.course.robot.catalogue import written
 
 
 @pytest.fixture(autouse=True)

@@ -6,10 +6,10 @@ import solutions
 from cells import cell
 
 from ir50p_lab.course import check, my_robot
+from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.dynamics import lump_view
 from ir50p_lab.course.dynamics.functions.velocity_torque import made_up_mass
 from ir50p_lab.course.kinematics.functions.frames import frames
-from ir50p_lab.course.robot.catalogue import task
 from ir50p_lab.course.robot.parts import parts
 from ir50p_lab.modelling import IR50P, Arm, coriolis_matrix, gravity, mass_matrix
 

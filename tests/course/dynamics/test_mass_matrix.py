@@ -7,7 +7,7 @@ from cells import cell
 
 from ir50p_lab.course import parts
 from ir50p_lab.course.checking.grade import grade
-from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.modelling import IR50P, THESIS_A, THESIS_RODS, mass_matrix
 
 TASK = task("mass_matrix")
