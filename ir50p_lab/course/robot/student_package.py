@@ -82,7 +82,7 @@ def keep(source, task, find, *, loan=""):
 
 def lend(task, find):
     """Write the course's solution of a function, marked as on loan. Returns what else came along."""
-    return keep(Source(task.function, task.loan, _calls(task)), task, find, loan=_LOAN)
+    return keep(Source(task.function, task.solution_text, _calls(task)), task, find, loan=_LOAN)
 
 
 def put_aside(name):
@@ -134,7 +134,7 @@ def load(name):
 def _calls(task):
     import re
 
-    return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.loan)))
+    return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.solution_text)))
 
 
 def _exports(more=""):
@@ -157,7 +157,7 @@ def _small_test(task):
     return (
         f"import numpy as np\nfrom numpy import array, inf, nan\n\nfrom my_robot import {task.name}\n\n\n"
         f"def test_{task.name}():\n    found = {task.name}({arguments})\n"
-        f"    expected = {_plain(task.right(*case))}\n{compared}"
+        f"    expected = {_plain(task.reference(*case))}\n{compared}"
     )
 
 
