@@ -1,4 +1,4 @@
-"""Functions of 11 that stay in their notebook: the course's, what each is tried on, typical slips."""
+"""Functions of 11 that stay in their notebook: the course's, what each is tried on, typical mistakes."""
 
 import numpy as np
 
@@ -56,7 +56,7 @@ def _loops():
     return [tuple(row) for row in np.random.default_rng(11).uniform(low, high, (6, 5))]
 
 
-# ------------------------------------------------------------------------------------------------- typical slips
+# ------------------------------------------------------------------------------------------------- typical mistakes
 def _no_rate(t):
     return _circle(t, pace=None)
 
@@ -107,10 +107,10 @@ _LATE = "the lateness is left out: w times late, in degrees"
 TASKS = notebook_tasks(
     __file__,
     circle=(circle, _times, "three rows: angles, speeds, zeros", {
-        "slips": (Mistake(_no_rate, _CLOCK), Mistake(_no_radius, _METRES), Mistake(_other_sense, _ACROSS),
+        "mistakes": (Mistake(_no_rate, _CLOCK), Mistake(_no_radius, _METRES), Mistake(_other_sense, _ACROSS),
                   Mistake(_old_jacobian, _ELSEWHERE)), "tolerance": 1e-6}),
     motor_law=(motor_law, _pushes, "a way for each t", {"slips": (Mistake(_before, _BEFORE), Mistake(_speed, _SPEED))}),
     once_round=(once_round, _loops, "size and degrees, two numbers", {
         "results": ("size", "degrees"),
-        "slips": (Mistake(_radians, _DEGREES), Mistake(_no_sum, _SUM), Mistake(_prompt, _LATE))}),
+        "mistakes": (Mistake(_radians, _DEGREES), Mistake(_no_sum, _SUM), Mistake(_prompt, _LATE))}),
 )  # fmt: skip

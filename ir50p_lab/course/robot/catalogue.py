@@ -61,7 +61,7 @@ def stays(name):
 
 @cache
 def is_written(name):
-    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its slips in NAME.txt."""
+    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its mistakes in NAME.txt."""
     name = function_of(name)
     return (Path(__file__).parents[1] / ROOMS[name] / "functions" / f"{name}.py").exists()
 
