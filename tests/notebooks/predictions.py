@@ -1,6 +1,7 @@
 """The lecturer's table of predictions: `PYTHONPATH=. python tests/notebooks/predictions.py` writes it into docs/instructor.md.
 
-Name, unit and question are the notebooks'; `predictions.csv` holds what they do not say before the run.
+Name, unit and question are the notebooks'; `predictions.csv` holds what they do not say before the run, and the
+question (`asked`) where that of the text needs the text around it.
 """
 
 import csv
@@ -40,6 +41,7 @@ def table():
     lines = ["| | name | asked | truth | usual wrong guesses | the sentence one hopes for |", "|---|---|---|---|---|---|"]
     for number, name, unit, question in asked():
         row = known.pop(name)
+        question = row["asked"] or question
         lines.append(f"| {number} | `{name}` | {question} | {row['truth']} {unit} | {row['wrong']} | {row['sentence']} |")
     assert not known, f"no notebook asks for {list(known)}"
     return "\n".join(lines) + "\n"
