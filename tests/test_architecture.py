@@ -1,4 +1,4 @@
-"""Modules import in one direction, imports inside functions included; no class name stands for two things."""
+"""Modules import in one direction, imports inside functions and by `importlib` included; no class name stands for two things."""
 
 import ast
 import collections
@@ -6,6 +6,8 @@ import graphlib
 import re
 import sys
 from pathlib import Path
+
+import pytest
 
 PACKAGE = Path(__file__).parents[1] / "ir50p_lab"
 #: What each folder builds on, beside the files next to the folders; `launcher` is the standard library's and ours alone.
@@ -30,10 +32,15 @@ ROOMS = {
     "printed": set(),
     "robot": {"draw"},
     "checking": {"lab_book", "robot"},
-    "live_arm": {"draw", "robot", "checking"},
+    "my_robot": {"robot", "checking"},  # a file
+    "live_arm": {"draw", "robot", "checking", "my_robot"},
 }
-#: What else a subject builds on: the motion that its model is fitted to; frames and Jacobian of the arm's links.
-SUBJECTS_TOO = {"torque": {"fitting"}, "dynamics": {"kinematics"}}
+#: They look a function or an exercise up by its name, in the room of its subject: from below, and on purpose.
+FINDERS = {"ir50p_lab.course.checking.tasks", "ir50p_lab.course.checking.numbers"}
+#: No command and no page: what stands without the course.
+SUBJECTS = {"modelling", "signals", "controllers", "simulation", "bench", "identification", "vision"}
+#: What else a subject builds on: the motion that its model is fitted to; frames and Jacobian of the arm's links; 11's circle.
+SUBJECTS_TOO = {"torque": {"fitting"}, "dynamics": {"kinematics"}, "at_the_bench": {"kinematics", "motion"}}
 
 
 def modules():
@@ -65,6 +72,30 @@ def imports(tree, trees, home):
                 yield inner if inner in trees else home.get((node.module, name), node.module)
         elif isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name in trees)
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) in ("importlib.import_module", "import_module"):
+            wanted = re.compile(named_by(node.args[0]))
+            yield from filter(wanted.fullmatch, trees)
+
+
+def named_by(argument):
+    """What `import_module` is handed as a pattern: a literal, or an f-string with a fixed beginning; else of nothing."""
+    parts = argument.values if isinstance(argument, ast.JoinedStr) else [argument]
+    if not isinstance(parts[0], ast.Constant):
+        return "(?!)"
+    return "".join(re.escape(part.value) if isinstance(part, ast.Constant) else r"[\w.]+" for part in parts)
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("importlib.import_module('p.a')", ["p.a"]),
+        ("importlib.import_module(f'p.{room}.b')", ["p.c.b", "p.d.b"]),
+        ("importlib.import_module(name)", []),
+    ],
+)
+def test_imports_by_importlib_are_seen(line, found):
+    trees = dict.fromkeys(["p.a", "p.c.b", "p.d.b", "p"])
+    assert list(imports(ast.parse(line), trees, {})) == found
 
 
 def test_no_import_circle():
@@ -93,6 +124,16 @@ def test_imports_point_one_way():
             assert layer(other) not in above, f"{name} imports {other}"
 
 
+def test_a_subject_stands_without_the_course():
+    assert not any("course" in LAYERS[name] for name in SUBJECTS)
+    trees = modules()
+    home = homes(trees)
+    for name, tree in trees.items():
+        if layer(name).partition(".")[0] in SUBJECTS:
+            above = [other for other in imports(tree, trees, home) if other.startswith("ir50p_lab.course")]
+            assert above == [], f"{name} imports {above}"
+
+
 def test_rooms_of_the_course_build_on_what_lies_below():
     trees = modules()
     home = homes(trees)
@@ -100,7 +141,9 @@ def test_rooms_of_the_course_build_on_what_lies_below():
         if layer(name) == "course" and name != "ir50p_lab.course":
             room = name.split(".")[2]
             below = {room} | ROOMS.get(room, set(ROOMS) | SUBJECTS_TOO.get(room, set()))
-            found = {other for other in imports(tree, trees, home) if layer(other) == "course"}
+            found = {other for other in imports(tree, trees, home) if layer(other) == "course"} - {"ir50p_lab.course"}
+            if name in FINDERS:
+                found = {other for other in found if other.split(".")[2] in ROOMS}
             assert {other for other in found if other.split(".")[2] not in below} == set(), f"{name} reaches up"
 
 
@@ -108,7 +151,7 @@ def test_no_room_bears_a_public_name():
     """A folder would hide the function, or the package beside `course`."""
     rooms = {path.name for path in (PACKAGE / "course").iterdir() if path.is_dir()}
     taken = {name for package, name in homes(modules()) if package == "ir50p_lab.course"} | set(LAYERS)
-    assert rooms >= set(ROOMS) and rooms & taken == set()
+    assert rooms >= set(ROOMS) - {"my_robot"} and rooms & taken == set()
 
 
 def test_the_launcher_starts_with_the_standard_library_alone():

@@ -11,7 +11,7 @@ from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.course.lab_book import claims
 from ir50p_lab.course.lab_book.progress import progress_path, record
 from ir50p_lab.course.publishing import report
-from ir50p_lab.course.robot import student_package as folder
+from ir50p_lab.course.robot import student_package
 from ir50p_lab.errors import WrongFolderError
 from ir50p_lab.home import PROJECT, check_folder, home, path_setting, setting
 from ir50p_lab.launcher.commands import _first_page
@@ -24,7 +24,7 @@ EXAMPLE = "data/arm_example.toml"
 
 @pytest.fixture
 def elsewhere(tmp_path, monkeypatch):
-    """A notebook may run in any folder."""
+    """A notebook may run in any student_package."""
     place = tmp_path / "elsewhere"
     place.mkdir()
     monkeypatch.chdir(place)
@@ -64,7 +64,7 @@ def test_one_folder_for_all_that_is_the_students(elsewhere, tmp_path, monkeypatc
     assert _first_page(PROJECT) == ["--LabApp.default_url=/lab/tree/00_start_here.ipynb"]
     record("start-1")
     assert _first_page(PROJECT) == []
-    assert folder.folder().parent == tmp_path / "mylab"
+    assert student_package.folder().parent == tmp_path / "mylab"
     assert Recorder({}).path.parent == tmp_path / "mylab" / "recordings"
     claims.claim("it is so", 1, above=0)
     assert (tmp_path / "said.jsonl").exists()

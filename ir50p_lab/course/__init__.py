@@ -1,7 +1,7 @@
 """What the notebooks share, in rooms: a room is a subject, and what two subjects need lies below them.
 
-From below: `draw`, `lab_book`, `printed` (the thesis' equations), `robot` (what the student owns), `checking`,
-`live_arm`; on these stand the subjects, from `start` to `reaching`.
+From below: `draw`, `lab_book`, `printed` (the thesis' equations), `robot` (what the student owns), `checking`;
+on these `my_robot` and `live_arm`, and on all of them the subjects, from `start` to `reaching`.
 """
 
 from ir50p_lab import home, lazy
@@ -11,6 +11,7 @@ home.check_folder()
 
 __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
+    submodules=["my_robot"],
     submod_attrs={
         "checking.check": ["check", "reset"],
         "checking.numbers": ["solution"],
@@ -27,7 +28,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "live_arm.badge": ["badge_of"],
         "live_arm.step_through": ["step_through"],
         "loops.rehearse": ["RehearsalError", "rehearse"],
-        "robot": ["my_robot"],
-        "robot.parts": ["parts"],
+        "robot.arm_numbers": ["parts"],
     },
 )

@@ -10,7 +10,7 @@ import pytest
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID, ContinuousPID
 from ir50p_lab.course import solution
-from ir50p_lab.course.checking.numbers import everything, find, grade
+from ir50p_lab.course.checking.numbers import everything, find, grade_number
 from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, forward_kinematics, inverse_dynamics
 from ir50p_lab.signals import hold, low_pass, quintic
 from ir50p_lab.simulation import simulate
@@ -31,20 +31,31 @@ def problems(number):
         yield "its name is not prefix-number"
     if number.task.endswith((".", "?")) or any("\n" in text or len(text) > 220 for text in (number.task, number.why)):
         yield "task and why are not one line each"
-    if len(number.every_slip) < 3:
-        yield "fewer than three slips are known"
-    for says, wrong in number.every_slip.items():
-        note = grade(number, wrong)
+    if len(number.every_mistake) < 3:
+        yield "fewer than three mistakes are known"
+    for says, wrong in number.every_mistake.items():
+        note = grade_number(number, wrong)
         if not 15 <= len(says) <= 260 or says[-1] not in ".?:":
             yield f"{says!r} is not one or two sentences"
-        if note.state != "slip" or (says in number.slips and not note.text.endswith(says)):
-            yield f"slip {says!r} is answered by {note.text!r}"  # an own one may say more than a common one
-    right, away = grade(number, number.right.tolist()), grade(number, number.right + 3.3 * (1 + np.abs(number.right)))
+        if note.state != "mistake" or (says in number.mistakes and not note.text.endswith(says)):
+            yield f"mistake {says!r} is answered by {note.text!r}"  # an own one may say more than a common one
+    right, away = (
+        grade_number(number, number.right.tolist()),
+        grade_number(number, number.right + 3.3 * (1 + np.abs(number.right))),
+    )
     if right.state != "right":
         yield f"the right answer is told {right.text!r}"
     if away.state != "wrong":
         yield f"any other answer is told {away.text!r}"
-    told = " ".join((number.task, number.hint, *number.every_slip, grade(number, ...).text, grade(number, "x").text))
+    told = " ".join(
+        (
+            number.task,
+            number.hint,
+            *number.every_mistake,
+            grade_number(number, ...).text,
+            grade_number(number, "x").text,
+        )
+    )
     if given := [secret for secret in secrets(number) if secret in told]:
         yield f"the answer is given away: {given}"
 
@@ -233,9 +244,9 @@ def test_top_speed_needs_full_drive():
     ],
 )
 def test_wrong_answers_worked_out_by_hand(name, answer, words):
-    assert words in grade(find(name), answer).text
+    assert words in grade_number(find(name), answer).text
 
 
 def test_half_the_kp_leaves_more_than_twice_the_error():
-    softer, thesis = find("pid-1").right, list(find("pid-1").slips.values())[1]
+    softer, thesis = find("pid-1").right, list(find("pid-1").mistakes.values())[1]
     assert 2 < softer[1] / thesis[1] < 2.5

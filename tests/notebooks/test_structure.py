@@ -7,8 +7,9 @@ from minutes import core_of
 from notebook_runner import FOLDER, NOTEBOOKS, REWRITTEN
 
 from ir50p_lab.course.checking.numbers import everything
+from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.robot.catalogue import NOTEBOOKS as FUNCTIONS
-from ir50p_lab.course.robot.catalogue import STAGES, is_function, task
+from ir50p_lab.course.robot.catalogue import STAGES, is_function
 
 NUMBERS = {number.name: number.notebook for number in everything()}
 

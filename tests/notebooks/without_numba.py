@@ -37,7 +37,8 @@ np.save({!r}, np.concatenate([np.ravel(one) for one in kept]))
 CHECKS = """
 import numpy as np
 from ir50p_lab.course.checking.grade import grade
-from ir50p_lab.course.robot.catalogue import NOTEBOOKS, task
+from ir50p_lab.course.checking.tasks import task
+from ir50p_lab.course.robot.catalogue import NOTEBOOKS
 from ir50p_lab.course.publishing.site import NOTEBOOKS as tab
 import solutions
 written = solutions.load()

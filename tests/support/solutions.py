@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.checking.tasks import task
 
 FOLDER = Path(__file__).parents[1] / "solutions"
 ORDER = (
@@ -20,7 +20,7 @@ ORDER = (
 def source(name):
     """The text of one solution; of a stage on the way to one, the course's."""
     if "." in name:
-        return task(name).loan
+        return task(name).solution_text
     return (FOLDER / f"{name}.py").read_text(encoding="utf-8")
 
 

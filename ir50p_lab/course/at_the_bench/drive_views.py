@@ -7,9 +7,9 @@ import numpy as np
 
 from ir50p_lab.bench import UNIT, SimulatedBench, connect
 from ir50p_lab.bench.rest import rest_pose
+from ir50p_lab.course import my_robot
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, origin, subplots
 from ir50p_lab.course.lab_book.results import arm_that_answers
-from ir50p_lab.course.robot import my_robot
 from ir50p_lab.errors import BenchError, BoardLostError
 from ir50p_lab.modelling.named_arms import load_arm
 

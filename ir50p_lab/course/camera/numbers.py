@@ -1,6 +1,6 @@
 """Numbers of notebook 17: a ball that is not on the plane."""
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 
 # calib-4: a ball's centre read as if it lay on the table.
 _LENS_HEIGHT, _AWAY, _RADIUS = 0.6, 0.5, 0.03  # m; _AWAY: of the ball's centre from the foot of the lens
@@ -21,7 +21,7 @@ NUMBERS = (
         tolerance=3e-4,
         because="a third of a millimetre will do",
         why="The shift grows with the distance from the camera's foot: no constant offset can repair it.",
-        slips={
+        mistakes={
             "The radius is right only if the line of sight falls at 45 degrees: similar triangles.": _RADIUS,
             "That is the shift of the top of the ball: its centre is one radius above the table.": (
                 _shift(_LENS_HEIGHT, _AWAY, 2 * _RADIUS)

@@ -12,9 +12,9 @@ import re
 import numpy as np
 
 from ir50p_lab.course.checking.explain_error import ROOM
-from ir50p_lab.course.robot import student_package as folder
+from ir50p_lab.course.checking.tasks import task as task_of_name
+from ir50p_lab.course.robot import student_package
 from ir50p_lab.course.robot.catalogue import ORDER
-from ir50p_lab.course.robot.catalogue import task as find
 from ir50p_lab.course.robot.source import GIVEN, Source
 
 _ALLOWED = {"numpy", "math", "cmath", "collections", "dataclasses", "functools", "itertools", "operator", "typing"}
@@ -25,7 +25,7 @@ class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never s
     """The cell cannot stand alone; the message says why and what to do."""
 
 
-def take(thing, name, earlier, given=""):
+def extract(thing, name, earlier, given=""):
     """Return the Source of a function or class as its cell has it.
 
     name: what it has to be called; earlier: names of the functions of `my_robot` it may lean on. Lines of the cell that
@@ -69,11 +69,11 @@ def take(thing, name, earlier, given=""):
     return Source(name, "\n\n\n".join(_lines(text, node) for node in wanted), tuple(sorted(calls)))
 
 
-def made(source, task):
+def compile_source(source, task):
     """The function of a Source with NumPy, math and the earlier functions, and nothing of the notebook."""
     room = {"np": np, "numpy": np, "math": math}
     for name in source.calls:
-        room[name] = folder.load(name) if folder.is_there(name) else find(name).right
+        room[name] = student_package.load(name) if student_package.is_there(name) else task_of_name(name).reference
     file = f"{ROOM} {task.name}>"
     linecache.cache[file] = (len(source.text), None, source.text.splitlines(keepends=True), file)
     exec(compile(source.text, file, "exec"), room)

@@ -4,10 +4,10 @@ import numpy as np
 
 from ir50p_lab.bench import SimulatedBench, rest_pose
 from ir50p_lab.controllers import PID
+from ir50p_lab.course import my_robot
 from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.course.fitting.views import kept_motion
 from ir50p_lab.course.lab_book.results import arm_that_answers
-from ir50p_lab.course.robot import my_robot
 from ir50p_lab.signals import fourier
 
 

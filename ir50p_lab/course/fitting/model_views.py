@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.bench import ArmInstance, SimulatedBench, rest_pose
+from ir50p_lab.course import my_robot
 from ir50p_lab.course.draw.style import COLOURS, new_figure
 from ir50p_lab.course.fitting.own_model import columns, fit_rows
 from ir50p_lab.course.fitting.views import kept_motion
 from ir50p_lab.course.lab_book.results import arm_that_answers
-from ir50p_lab.course.robot import my_robot
 from ir50p_lab.errors import UnreachableError
 from ir50p_lab.signals import fourier, quintic
 

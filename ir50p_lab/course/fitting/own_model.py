@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ir50p_lab.course import my_robot
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
-from ir50p_lab.course.robot import my_robot
 from ir50p_lab.identification import process
 
 #: The columns that are fitted for each joint; what says the same as another is left out.

@@ -1,6 +1,6 @@
 """Numbers of notebook 16: a radius in pixels."""
 
-from ir50p_lab.course.checking.numbers import Number
+from ir50p_lab.course.checking.number import Number
 
 # image-4: the ball of 4.5.3 before a webcam.
 _F, _BALL, _AWAY = 700.0, 0.030, 0.80  # pixels, m, m
@@ -15,7 +15,7 @@ NUMBERS = (
         unit="px",
         tolerance=0.1,
         why="So the radii to search for follow from the camera and the work area: they need no trial.",
-        slips={
+        mistakes={
             "That is the diameter: the mistake of 4.5.1 again.": 2 * _F * _BALL / _AWAY,
             "That is for a ball at 1 m: divide by the distance.": _F * _BALL,
             "A ball further away looks smaller: divide by the distance.": _F * _AWAY * _BALL,

@@ -3,8 +3,8 @@
 import inspect
 import textwrap
 
+from ir50p_lab.course import my_robot
 from ir50p_lab.course.checking.cell import has_dots
-from ir50p_lab.course.robot import my_robot
 from ir50p_lab.course.robot.catalogue import ORDER, stays
 
 _WEAKEST_FIRST = ("not written yet", "the course's", "on loan", "yours")

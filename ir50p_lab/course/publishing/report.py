@@ -14,7 +14,7 @@ from ir50p_lab.bench import result_files
 from ir50p_lab.course import lab_book, my_robot
 from ir50p_lab.course.checking import numbers
 from ir50p_lab.course.lab_book.progress import read_progress
-from ir50p_lab.course.robot import student_package as folder
+from ir50p_lab.course.robot import student_package
 from ir50p_lab.course.robot.catalogue import ORDER, notebook_of
 from ir50p_lab.home import setting
 
@@ -129,7 +129,7 @@ def _done(attempts):
     rows = [
         (notebook_of(name), _text(name), _whose(name), str(len(attempts.get(name, []))))
         for name in ORDER
-        if folder.is_there(name) or name in attempts
+        if student_package.is_there(name) or name in attempts
     ]
     solved = [
         (one.notebook, _text(textwrap.shorten(one.task, 80, placeholder=" ...")), _when(done[one.name]))
@@ -148,8 +148,8 @@ def _whose(name):
 def _listings():
     shown = []
     for name in ORDER:
-        if folder.is_there(name):
-            text = folder.path_of(name).read_text(encoding="utf-8")
+        if student_package.is_there(name):
+            text = student_package.read(student_package.path_of(name))
             shown.append(f"<h3>{_text(name)} ({_whose(name)})</h3><pre>{_text(text)}</pre>")
     return "".join(shown)
 

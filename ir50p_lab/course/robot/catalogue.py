@@ -1,10 +1,7 @@
 """The functions of `my_robot` in the order in which they are written, and where each is asked for."""
 
-import importlib
 from functools import cache
 from pathlib import Path
-
-from ir50p_lab.errors import InputError
 
 _TABLE = """
 00 kinematics    rot_z
@@ -28,14 +25,15 @@ _TABLE = """
 """  # every function: the notebook that asks for it, and the room in which it stands
 _ROWS = [line.split() for line in _TABLE.strip().splitlines()]
 NOTEBOOKS = {number: tuple(names) for number, _, *names in _ROWS}
-_ROOMS = {name: room for _, room, *names in _ROWS for name in names}
-ORDER = tuple(_ROOMS)
+ROOMS = {name: room for _, room, *names in _ROWS for name in names}
+ORDER = tuple(ROOMS)
 STAGES = {"PID": ("PID.p", "PID.pi", "PID.limits")}  # checked on the way; "PID" itself is the last
-_HERE = {  # functions that stay in their notebook, and the room in which the course's stand
+IN_NOTEBOOK = {  # functions that stay in their notebook, and the room in which the course's stand
     **dict.fromkeys(("along", "pace", "push"), "kinematics"),
     **dict.fromkeys(("centres", "heaviness", "shoulder_holds", "lump_torque", "torque", "acceleration"), "dynamics"),
     **dict.fromkeys(("falling", "halve", "slide", "motor_factors", "counts_for"), "motion"),
-    **dict.fromkeys(("circle", "once_round"), "at_the_bench"),
+    "rule": "loops",
+    **dict.fromkeys(("circle", "motor_law", "once_round"), "at_the_bench"),
     **dict.fromkeys(("carry", "cancel", "model", "pushes", "into", "planned"), "torque"),
 }
 _at = {}  # stage of each function that this session works on
@@ -58,19 +56,14 @@ def is_function(name):
 
 def stays(name):
     """Tell whether a name is that of a function that stays in its notebook."""
-    return name in _HERE
-
-
-def of_notebook(name):
-    """The Task of a function that stays in its notebook."""
-    return importlib.import_module(f"ir50p_lab.course.{_HERE[name]}.notebook_functions").TASKS[name]
+    return name in IN_NOTEBOOK
 
 
 @cache
 def is_written(name):
-    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its slips in NAME.txt."""
+    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its mistakes in NAME.txt."""
     name = function_of(name)
-    return (Path(__file__).parents[1] / _ROOMS[name] / "functions" / f"{name}.py").exists()
+    return (Path(__file__).parents[1] / ROOMS[name] / "functions" / f"{name}.py").exists()
 
 
 def written():
@@ -78,24 +71,9 @@ def written():
     return tuple(filter(is_written, ORDER))
 
 
-@cache
-def task(name):
-    """The Task of a function of `my_robot`, or of a stage of one. Raises InputError where it is still to come."""
-    if not is_written(name):
-        raise InputError(f"{name} is asked for in notebook {notebook_of(name)}, which is still to come")
-    function = function_of(name)
-    module = importlib.import_module(f"ir50p_lab.course.{_ROOMS[function]}.functions.{function}")
-    return module.STAGES[name] if "." in name else module.TASK
-
-
-def work_on(name):
-    """Take up a function at a stage: this session uses that stage from now on, all others the whole. Returns its Task.
-
-    Raises InputError where it is still to come.
-    """
-    found = task(name)
+def work_at(name):
+    """Take up a function at a stage: this session uses that stage from now on, all others the whole."""
     _at[function_of(name)] = name
-    return found
 
 
 def at_work(name):

@@ -11,12 +11,13 @@ import numpy as np
 from ir50p_lab import home
 from ir50p_lab.course.robot.catalogue import ORDER, function_of
 from ir50p_lab.course.robot.source import Source
+from ir50p_lab.errors import LabError
 
 _LOAN = "# on loan from the course"
 _STAGE = ", stage "
 _PACKAGE = "my_robot"
-_loaded = {"stamp": None}
-fresh = {}  # what `my_robot` has just looked up; empty when a function was kept or put aside
+_import_state = {"stamp": None}
+lookup_cache = {}  # what `my_robot` has just looked up; empty when a function was kept or put aside
 
 
 def folder() -> Path:
@@ -29,37 +30,43 @@ def path_of(name) -> Path:
     return folder() / f"_{function_of(name)}.py"
 
 
+def read(path):
+    """Return the text of a file of a function. Raises LabError if another program has saved it in another encoding."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise LabError(f"{path} is not in UTF-8: open it in an editor and save it with the encoding UTF-8") from None
+
+
 def is_there(name):
     """Tell whether a function, or this stage of one, is in the folder, the student's or on loan."""
     if not path_of(name).exists():
         return False
-    first = path_of(name).read_text(encoding="utf-8").partition("\n")[0]
+    first = read(path_of(name)).partition("\n")[0]
     return first.partition(_STAGE)[2].split(":")[0] == (name if "." in name else "")
 
 
 def on_loan(name):
     """Tell whether a function in the folder is the course's."""
-    return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
+    return is_there(name) and read(path_of(name)).startswith(_LOAN)
 
 
-def keep(source, task, *, loan=""):
+def keep(source, task, find, *, loan=""):
     """Write a function with its small test, and the list of what there is. What was there before goes to `old`.
 
-    Functions that it calls and that are not there yet come along on loan. Returns their names. Raises OSError: of a
-    function all files are written, or none.
+    Functions that it calls and that are not there yet come along on loan; find: gives the Task of one by its name.
+    Returns their names. Raises OSError: of a function all files are written, or none.
     """
-    from ir50p_lab.course.robot.catalogue import task as find
-
     folder().mkdir(parents=True, exist_ok=True)
     lent = []
     for name in source.calls:
         if not is_there(name):
-            lent += [name, *lend(find(name))]
+            lent += [name, *lend(find(name), find)]
     stage = f"{_STAGE}{task.name}" if "." in task.name else ""
     head = f"{loan or '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
     module, test, package = path_of(source.name), folder() / f"test_{source.name}.py", folder() / "__init__.py"
     texts = {module: head + source.module, test: task.test or _small_test(task), package: _exports(source.name)}
-    before = {path: path.read_text(encoding="utf-8") for path in texts if path.is_file()}
+    before = {path: read(path) for path in texts if path.is_file()}
     try:
         for path, text in texts.items():
             _write(path, text)
@@ -69,13 +76,13 @@ def keep(source, task, *, loan=""):
         for path in texts:
             _put_back(path, before.get(path))
         raise
-    fresh.clear()
+    lookup_cache.clear()
     return lent
 
 
-def lend(task):
+def lend(task, find):
     """Write the course's solution of a function, marked as on loan. Returns what else came along."""
-    return keep(Source(task.function, task.loan, _calls(task)), task, loan=_LOAN)
+    return keep(Source(task.function, task.solution_text, _calls(task)), task, find, loan=_LOAN)
 
 
 def put_aside(name):
@@ -83,11 +90,11 @@ def put_aside(name):
     path, name = path_of(name), function_of(name)
     if not path.exists():
         return
-    _lay_by(name, path.read_text(encoding="utf-8"))
+    _lay_by(name, read(path))
     path.unlink()
     (folder() / f"test_{name}.py").unlink(missing_ok=True)
     _write(folder() / "__init__.py", _exports())
-    fresh.clear()
+    lookup_cache.clear()
 
 
 def _lay_by(name, content):
@@ -108,7 +115,9 @@ def load(name):
     """The function from the folder, read again when a file has changed. What is wrong in a file is raised."""
     files = sorted(folder().glob("_*.py"))
     stamp = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
-    if _loaded["stamp"] != (folder(), stamp):
+    if _import_state["stamp"] != (folder(), stamp):
+        for path in files:
+            read(path)  # Python's own error would not name the file
         for module in [one for one in sys.modules if one.partition(".")[0] == _PACKAGE]:
             del sys.modules[module]
         spec = importlib.util.spec_from_file_location(
@@ -118,14 +127,14 @@ def load(name):
         sys.modules[_PACKAGE] = package
         spec.loader.exec_module(package)
         cloudpickle.register_pickle_by_value(package)  # another process has no such module
-        _loaded["stamp"] = (folder(), stamp)
+        _import_state["stamp"] = (folder(), stamp)
     return getattr(sys.modules[_PACKAGE], name)
 
 
 def _calls(task):
     import re
 
-    return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.loan)))
+    return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.solution_text)))
 
 
 def _exports(more=""):
@@ -148,7 +157,7 @@ def _small_test(task):
     return (
         f"import numpy as np\nfrom numpy import array, inf, nan\n\nfrom my_robot import {task.name}\n\n\n"
         f"def test_{task.name}():\n    found = {task.name}({arguments})\n"
-        f"    expected = {_plain(task.right(*case))}\n{compared}"
+        f"    expected = {_plain(task.reference(*case))}\n{compared}"
     )
 
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench, rest_pose
+from ir50p_lab.course import my_robot
 from ir50p_lab.course.lab_book.results import arm_that_answers, load_result, newest_result
-from ir50p_lab.course.robot import my_robot
 from ir50p_lab.course.torque.views import training_run
 from ir50p_lab.identification import identify
 

@@ -8,7 +8,7 @@ from ir50p_lab.bench import SimulatedBench, fit_calibration
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.at_the_bench import measure_views as views
 from ir50p_lab.course.checking.grade import grade
-from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.modelling import IR50P
 
 

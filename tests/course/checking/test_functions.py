@@ -11,8 +11,9 @@ from cells import cell
 from ir50p_lab import modelling
 from ir50p_lab.course import check, lab_book, my_robot, reset
 from ir50p_lab.course.checking.grade import grade
-from ir50p_lab.course.robot import student_package as folder
-from ir50p_lab.course.robot.catalogue import ORDER, task, written
+from ir50p_lab.course.checking.tasks import task
+from ir50p_lab.course.robot import student_package
+from ir50p_lab.course.robot.catalogue import ORDER, written
 from ir50p_lab.modelling import IR50P
 
 
@@ -50,24 +51,24 @@ def test_reference_solutions_pass_become_the_robot_and_stand_alone(home, capsys)
 def test_poses_and_tip_that_stand_in_are_the_packages():
     l, q = np.array(IR50P.l), np.random.default_rng(0).uniform(-1.5, 1.5, (50, 3))
     tips = modelling.forward_kinematics(IR50P, q)
-    np.testing.assert_allclose([task("forward_kinematics").right(one, l) for one in q], tips, atol=1e-12)
-    poses = [task("inverse_kinematics").right(p, l) for p in tips]
+    np.testing.assert_allclose([task("forward_kinematics").reference(one, l) for one in q], tips, atol=1e-12)
+    poses = [task("inverse_kinematics").reference(p, l) for p in tips]
     np.testing.assert_allclose(np.exp(1j * np.array(poses)), np.exp(1j * modelling.inverse_kinematics(IR50P, tips).q))
 
 
 @pytest.mark.parametrize("name", written())
 def test_the_loan_is_right_too(name):
-    names = {"np": np, **{one: task(one).right for one in written()}}
-    exec(task(name).loan, names)
+    names = {"np": np, **{one: task(one).reference for one in written()}}
+    exec(task(name).solution_text, names)
     assert grade(task(name), names[name]).state == "right"
 
 
 @pytest.mark.parametrize("name", written())
-def test_every_slip_gets_its_own_sentence(name):
+def test_every_mistake_gets_its_own_sentence(name):
     one = task(name)
-    for slip in one.slips:
-        verdict = grade(one, slip.wrong)
-        assert verdict.says == slip.says
+    for mistake in one.mistakes:
+        verdict = grade(one, mistake.function)
+        assert verdict.says == mistake.says
         assert verdict.state == "wrong"
 
 
@@ -100,7 +101,7 @@ def test_what_stands_in_the_cell_comes_along_and_nothing_else(capsys):
         "    s = np.sin(angle)\n    return np.array([[c(angle), -s, 0], [s, c(angle), 0], [0, 0, 1]])\n\n\nprint('hello')\n"
     )
     give("rot_z", text)
-    kept = folder.path_of("rot_z").read_text()
+    kept = student_package.path_of("rot_z").read_text()
     assert "TURN = 1.0" in kept and "def c(a)" in kept and "hello" not in kept
     assert kept.count("import numpy") == 1
 
@@ -130,7 +131,7 @@ def test_after_three_failures_lines_after_six_a_loan(capsys):
     assert my_robot.whose("rot_z") == "on loan"
     give("rot_z", solutions.source("rot_z"))
     assert my_robot.whose("rot_z") == "yours"
-    assert list((folder.folder() / "old").glob("rot_z_*.py"))
+    assert list((student_package.folder() / "old").glob("rot_z_*.py"))
 
 
 def test_what_it_calls_comes_along_on_loan(capsys):
@@ -142,12 +143,12 @@ def test_what_it_calls_comes_along_on_loan(capsys):
 
 def test_a_changed_file_is_read_again_and_a_reset_keeps_a_copy(capsys):
     give("rot_z", solutions.source("rot_z"))
-    folder.path_of("rot_z").write_text("def rot_z(angle):\n    return 'mine'\n")
+    student_package.path_of("rot_z").write_text("def rot_z(angle):\n    return 'mine'\n")
     assert my_robot.rot_z(1) == "mine"
     reset("rot_z")
     assert my_robot.whose("rot_z") == "the course's"
     np.testing.assert_allclose(my_robot.rot_z(0), np.eye(3))
-    assert any("mine" in old.read_text() for old in (folder.folder() / "old").glob("*.py"))
+    assert any("mine" in old.read_text() for old in (student_package.folder() / "old").glob("*.py"))
 
 
 def test_my_robot_may_be_named_in_a_cell(capsys):

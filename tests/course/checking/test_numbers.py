@@ -9,14 +9,15 @@ import pytest
 import sympy
 
 from ir50p_lab.course import check, solution
-from ir50p_lab.course.checking.numbers import Number, grade
+from ir50p_lab.course.checking.number import Number
+from ir50p_lab.course.checking.numbers import grade_number
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import PROJECT
 
-VECTOR = Number("x-1", "", "three numbers", [1.0, 2.0, 3.5], unit="m", tolerance=1e-6, why="because", slips={})
-ANGLES = Number("x-2", "", "two angles", [0.1, 3], unit="rad", tolerance=1e-6, angle=True, why="so", slips={})
+VECTOR = Number("x-1", "", "three numbers", [1.0, 2.0, 3.5], unit="m", tolerance=1e-6, why="because", mistakes={})
+ANGLES = Number("x-2", "", "two angles", [0.1, 3], unit="rad", tolerance=1e-6, angle=True, why="so", mistakes={})
 TYPED = Number(
-    "x-3", "", "e", np.e, tolerance=1e-3, why="because", slips={"Nearly: it is not pi.": np.pi}, hint="Euler."
+    "x-3", "", "e", np.e, tolerance=1e-3, why="because", mistakes={"Nearly: it is not pi.": np.pi}, hint="Euler."
 )
 
 
@@ -67,13 +68,13 @@ class Hostile:
     ],
 )
 def test_a_wrong_form_is_named(answer, words):
-    note = grade(VECTOR, answer)
+    note = grade_number(VECTOR, answer)
     assert note.state == "unreadable"
     assert words in note.text
 
 
 def test_an_object_that_raises_is_no_error():
-    assert grade(VECTOR, Hostile()).text == "found an object of type Hostile; expected 3 numbers in m."
+    assert grade_number(VECTOR, Hostile()).text == "found an object of type Hostile; expected 3 numbers in m."
 
 
 @pytest.mark.parametrize(
@@ -83,23 +84,23 @@ def test_an_object_that_raises_is_no_error():
         (VECTOR, (..., ..., ...), "open", "not answered yet"),
         (VECTOR, [1, 2, 4], "wrong", "look again at answer[2]"),
         (VECTOR, [1.000004, 2, 3.5], "wrong", "close, but 1e-06 m"),
-        (VECTOR, [-1, -2, -3.5], "slip", "sign"),
-        (VECTOR, [1000, 2000, 3500], "slip", "millimetres"),
-        (ANGLES, np.rad2deg([0.1, 3]), "slip", "degrees"),
+        (VECTOR, [-1, -2, -3.5], "mistake", "sign"),
+        (VECTOR, [1000, 2000, 3500], "mistake", "millimetres"),
+        (ANGLES, np.rad2deg([0.1, 3]), "mistake", "degrees"),
         (TYPED, 2.72, "wrong", "close, but 0.001 is the limit (it allows for rounding)"),
-        (TYPED, 3.1416, "slip", "not yet, found 3.1416. Nearly: it is not pi."),
+        (TYPED, 3.1416, "mistake", "not yet, found 3.1416. Nearly: it is not pi."),
         (TYPED, 1, "wrong", "not yet, found 1; expected a number: e. Euler."),
     ],
 )
 def test_what_is_said(number, answer, state, words):
-    note = grade(number, answer)
+    note = grade_number(number, answer)
     assert note.state == state, note.text
     assert words in note.text
 
 
 @pytest.mark.parametrize("answer", [[1.0001, 2, 3.5], [1.2, 2.2, 3.3]])
 def test_what_is_far_off_is_not_called_close(answer):
-    assert "close" not in grade(VECTOR, answer).text
+    assert "close" not in grade_number(VECTOR, answer).text
 
 
 @pytest.mark.parametrize(
@@ -114,7 +115,7 @@ def test_what_is_far_off_is_not_called_close(answer):
     ],
 )
 def test_a_right_answer_in_another_form(number, answer):
-    note = grade(number, answer)
+    note = grade_number(number, answer)
     assert note.state == "right" and note.text == f"right. {number.why}"
 
 

@@ -9,11 +9,10 @@ import pytest
 from cells import cell
 
 from ir50p_lab.course import check, my_robot
-from ir50p_lab.course.checking.cell import take
+from ir50p_lab.course.checking.cell import extract
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.task import Failed, Task, text_of
-from ir50p_lab.course.robot import catalogue
-from ir50p_lab.course.robot import student_package as folder
+from ir50p_lab.course.robot import catalogue, student_package
 from ir50p_lab.course.robot.source import Source
 
 
@@ -34,9 +33,9 @@ def lines():
 
 FIT_LINE = Task(
     name="fit_line",
-    asks="slope, offset, covariance (2, 2) and scatter",
-    right=fit_line,
-    loan=text_of(fit_line),
+    returns="slope, offset, covariance (2, 2) and scatter",
+    reference=fit_line,
+    solution_text=text_of(fit_line),
     cases=lines,
     results=("slope", "offset", "covariance", "scatter"),
 )
@@ -68,9 +67,9 @@ def test_integrate():
 """
 INTEGRATE = Task(
     name="integrate",
-    asks="t (k + 1,) and x (k + 1, n)",
-    right=integrate,
-    loan=text_of(integrate),
+    returns="t (k + 1,) and x (k + 1, n)",
+    reference=integrate,
+    solution_text=text_of(integrate),
     cases=lambda: [(swing, np.array([1.0, 0.5]), 0.3, 0.1), (swing, np.array([0.2, 1.0]), 2.0, 0.2)],
     results=("t", "x"),
     test=TEST,
@@ -86,14 +85,14 @@ def home(tmp_path, monkeypatch):
 
 
 def says(task, old, new):
-    assert old in task.loan
-    text = task.loan.replace(old, new)
-    return grade(task, take(cell(text, task.name), task.name, ())).says
+    assert old in task.solution_text
+    text = task.solution_text.replace(old, new)
+    return grade(task, extract(cell(text, task.name), task.name, ())).says
 
 
 @pytest.mark.parametrize("task", [FIT_LINE, INTEGRATE], ids=lambda task: task.name)
 def test_a_right_answer_in_parts_of_unlike_shape_passes(task):
-    assert grade(task, task.right).state == "right"
+    assert grade(task, task.reference).state == "right"
 
 
 @pytest.mark.parametrize(
@@ -131,8 +130,8 @@ def test_each_result_is_named_in_the_example():
 
 def test_the_small_tests_of_both_are_python_and_pass(home):
     for task in (FIT_LINE, INTEGRATE):
-        folder.keep(Source(task.name, task.loan, ()), task)
-    assert "array" in (folder.folder() / "test_fit_line.py").read_text()
+        student_package.keep(Source(task.name, task.solution_text, ()), task, find=None)
+    assert "array" in (student_package.folder() / "test_fit_line.py").read_text()
     subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "my_robot"], cwd=home, check=True)
 
 
@@ -147,7 +146,7 @@ def tried(function):
 
 
 def test_a_function_of_keywords_is_asked_by_a_trial_of_its_own():
-    task = Task("find", "a place", find, text_of(find), tried=tried, test="def test_find():\n    pass\n")
+    task = Task("find", "a place", find, text_of(find), trial=tried, test="def test_find():\n    pass\n")
     assert grade(task, find).state == "right"
     assert grade(task, lambda rgb, *, hue: 0).says == "it finds another place"
 
@@ -182,12 +181,12 @@ ROT_Z = "def rot_z(angle):\n    c, s = np.cos(angle), np.sin(angle)\n    return 
 
 
 def test_all_files_of_a_function_are_written_or_none(home, capsys):
-    (folder.folder() / "test_rot_z.py").mkdir(parents=True)
+    (student_package.folder() / "test_rot_z.py").mkdir(parents=True)
     check("rot_z", cell(ROT_Z, "rot_z"))
     assert "could not be kept" in capsys.readouterr().out
-    assert my_robot.whose("rot_z") == "the course's" and not folder.path_of("rot_z").exists()
+    assert my_robot.whose("rot_z") == "the course's" and not student_package.path_of("rot_z").exists()
     np.testing.assert_allclose(my_robot.rot_z(0), np.eye(3))
-    (folder.folder() / "test_rot_z.py").rmdir()
+    (student_package.folder() / "test_rot_z.py").rmdir()
     check("rot_z", cell(ROT_Z, "rot_z"))
     assert my_robot.whose("rot_z") == "yours"
 
@@ -195,8 +194,8 @@ def test_all_files_of_a_function_are_written_or_none(home, capsys):
 def test_a_file_is_looked_at_once_in_a_tenth_of_a_second(monkeypatch, capsys):
     check("rot_z", cell(ROT_Z, "rot_z"))
     looks = []
-    load = folder.load
-    monkeypatch.setattr(folder, "load", lambda name: looks.append(name) or load(name))
+    load = student_package.load
+    monkeypatch.setattr(student_package, "load", lambda name: looks.append(name) or load(name))
     began = time.monotonic()
     while time.monotonic() < began + 0.05:
         my_robot.rot_z(0)

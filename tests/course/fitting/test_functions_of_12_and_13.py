@@ -8,7 +8,7 @@ import solutions
 from cells import cell
 
 from ir50p_lab.course import check, my_robot
-from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.identification import regressor as columns_of_the_package
 
 

@@ -7,10 +7,10 @@ from cells import cell
 
 from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking.grade import grade
+from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.loops.functions import PID_trials as trials
-from ir50p_lab.course.robot import catalogue
-from ir50p_lab.course.robot import student_package as folder
-from ir50p_lab.course.robot.catalogue import STAGES, task
+from ir50p_lab.course.robot import catalogue, student_package
+from ir50p_lab.course.robot.catalogue import STAGES
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
@@ -28,7 +28,7 @@ def home(tmp_path, monkeypatch):
 
 def edited(stage, *edits):
     """The course's solution of a stage with some lines changed."""
-    text = task(stage).loan
+    text = task(stage).solution_text
     for old, new in edits:
         assert old in text
         text = text.replace(old, new)
@@ -91,7 +91,7 @@ def test_each_stage_takes_the_place_of_the_one_before(home, capsys):
     for stage in ALL:
         check(stage, cell(solutions.source(stage), "PID"))
         assert "right, and yours: from now on my_robot.PID is this class" in capsys.readouterr().out
-        assert folder.is_there(stage) and my_robot.whose("PID") == "yours"
+        assert student_package.is_there(stage) and my_robot.whose("PID") == "yours"
         catalogue._at.clear()  # another notebook: a stage on the way is not used there
         assert my_robot.whose("PID") == ("yours" if stage == "PID" else "the course's")
         assert my_robot.PID(kp=1, ki=1, kd=1).unit == "PWM"
@@ -111,7 +111,7 @@ def test_what_stands_in_is_at_the_same_stage(capsys):
     target = np.array([0.0, 0.8, 0.0])
     check("PID.p")
     short = simulate(IR50P, my_robot.PID(kp=400), target, duration=3)
-    mine = simulate(IR50P, made(task("PID.p").loan)(kp=400), target, duration=3)
+    mine = simulate(IR50P, made(task("PID.p").solution_text)(kp=400), target, duration=3)
     np.testing.assert_allclose(short.q, mine.q, atol=1e-9)
     check("PID.pi")
     far = np.array([0.0, 4.0, 0.0])

@@ -6,12 +6,12 @@ import solutions
 from cells import cell
 
 from ir50p_lab.course import my_robot
-from ir50p_lab.course.checking.cell import take
+from ir50p_lab.course.checking.cell import extract
 from ir50p_lab.course.checking.grade import grade
+from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.live_arm.badge import badge_of
 from ir50p_lab.course.motion import trajectory_views as views
-from ir50p_lab.course.robot import student_package as folder
-from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.robot import student_package
 from ir50p_lab.course.robot.source import Source
 from ir50p_lab.modelling import IR50P, THESIS_A, mass_matrix
 
@@ -23,7 +23,7 @@ def told(name, *changes, text=None):
         assert old in text, old
         text = text.replace(old, new)
     wanted = task(name)
-    found = grade(wanted, take(cell(text, name), wanted.function, wanted.leans_on))
+    found = grade(wanted, extract(cell(text, name), wanted.function, wanted.leans_on))
     return f"{found.state}: {found.says}"
 
 
@@ -44,10 +44,10 @@ def test_the_small_test_of_a_function_of_functions_runs(name, tmp_path, monkeypa
     """What is written beside the student's function is Python, and holds."""
     monkeypatch.setenv("IR50P_HOME", str(tmp_path))
     calls = ("rk4_step",) if name == "integrate" else ()
-    folder.keep(Source(name, solutions.source(name), calls), task(name))
+    student_package.keep(Source(name, solutions.source(name), calls), task(name), task)
     text = (tmp_path / "my_robot" / f"test_{name}.py").read_text(encoding="utf-8")
-    names = {name: folder.load(name)}
-    exec(text, names)  # folder.load has made `my_robot` a module
+    names = {name: student_package.load(name)}
+    exec(text, names)  # student_package.load has made `my_robot` a module
     names[f"test_{name}"]()
 
 

@@ -6,7 +6,7 @@ import pytest
 from cells import cell
 
 from ir50p_lab.course import check, my_robot
-from ir50p_lab.course.robot.catalogue import task
+from ir50p_lab.course.checking.tasks import task
 
 
 @pytest.fixture(autouse=True)

@@ -11,32 +11,33 @@ A class that is written in stages serves at its stage in the notebook that works
 from time import monotonic
 
 from ir50p_lab import home
-from ir50p_lab.course.robot import student_package as folder
-from ir50p_lab.course.robot.catalogue import ORDER, at_work, is_function, task, written
+from ir50p_lab.course.checking.tasks import task
+from ir50p_lab.course.robot import student_package
+from ir50p_lab.course.robot.catalogue import ORDER, at_work, is_function, written
 
 _FRESH = 0.1  # s: for so long a function that was looked up is used without looking at its file again
 _said = set()
 
 
 def __getattr__(name):
-    function, until, *where = folder.fresh.get(name, (None, 0.0))
+    function, until, *where = student_package.lookup_cache.get(name, (None, 0.0))
     if monotonic() < until and where == [at_work(name), home.setting(home.VARIABLE)]:
         return function
     if not is_function(name):
         raise AttributeError(f"my_robot has no {name}; its functions are {', '.join(ORDER)}")
     stage = at_work(name)
-    function = folder.load(name) if folder.is_there(stage) else task(stage).right
+    function = student_package.load(name) if student_package.is_there(stage) else task(stage).reference
     _say(name)
-    folder.fresh[name] = function, monotonic() + _FRESH, stage, home.setting(home.VARIABLE)
+    student_package.lookup_cache[name] = function, monotonic() + _FRESH, stage, home.setting(home.VARIABLE)
     return function
 
 
 def whose(name):
     """Say whose function is used: "yours", "on loan" or "the course's"."""
     stage = at_work(name)
-    if not folder.is_there(stage):
+    if not student_package.is_there(stage):
         return "the course's"
-    return "on loan" if folder.on_loan(stage) else "yours"
+    return "on loan" if student_package.on_loan(stage) else "yours"
 
 
 def done():

@@ -1,0 +1,22 @@
+"""The Task of a function by its name, found in the room of its subject."""
+
+import importlib
+from functools import cache
+
+from ir50p_lab.course.robot.catalogue import IN_NOTEBOOK, ROOMS, function_of, is_written, notebook_of
+from ir50p_lab.errors import InputError
+
+
+@cache
+def task(name):
+    """The Task of a function of `my_robot`, or of a stage of one. Raises InputError where it is still to come."""
+    if not is_written(name):
+        raise InputError(f"{name} is asked for in notebook {notebook_of(name)}, which is still to come")
+    function = function_of(name)
+    module = importlib.import_module(f"ir50p_lab.course.{ROOMS[function]}.functions.{function}")
+    return module.STAGES[name] if "." in name else module.TASK
+
+
+def of_notebook(name):
+    """The Task of a function that stays in its notebook."""
+    return importlib.import_module(f"ir50p_lab.course.{IN_NOTEBOOK[name]}.notebook_functions").TASKS[name]
