@@ -26,7 +26,7 @@ def __getattr__(name):
     if not is_function(name):
         raise AttributeError(f"my_robot has no {name}; its functions are {', '.join(ORDER)}")
     stage = at_work(name)
-    function = student_package.load(name) if student_package.is_there(stage) else task(stage).right
+    function = student_package.load(name) if student_package.is_there(stage) else task(stage).reference
     _say(name)
     student_package.lookup_cache[name] = function, monotonic() + _FRESH, stage, home.setting(home.VARIABLE)
     return function

@@ -31,14 +31,14 @@ def problems(number):
         yield "its name is not prefix-number"
     if number.task.endswith((".", "?")) or any("\n" in text or len(text) > 220 for text in (number.task, number.why)):
         yield "task and why are not one line each"
-    if len(number.every_slip) < 3:
-        yield "fewer than three slips are known"
-    for says, wrong in number.every_slip.items():
+    if len(number.every_mistake) < 3:
+        yield "fewer than three mistakes are known"
+    for says, wrong in number.every_mistake.items():
         note = grade_number(number, wrong)
         if not 15 <= len(says) <= 260 or says[-1] not in ".?:":
             yield f"{says!r} is not one or two sentences"
-        if note.state != "slip" or (says in number.slips and not note.text.endswith(says)):
-            yield f"slip {says!r} is answered by {note.text!r}"  # an own one may say more than a common one
+        if note.state != "mistake" or (says in number.mistakes and not note.text.endswith(says)):
+            yield f"mistake {says!r} is answered by {note.text!r}"  # an own one may say more than a common one
     right, away = (
         grade_number(number, number.right.tolist()),
         grade_number(number, number.right + 3.3 * (1 + np.abs(number.right))),
@@ -48,7 +48,13 @@ def problems(number):
     if away.state != "wrong":
         yield f"any other answer is told {away.text!r}"
     told = " ".join(
-        (number.task, number.hint, *number.every_slip, grade_number(number, ...).text, grade_number(number, "x").text)
+        (
+            number.task,
+            number.hint,
+            *number.every_mistake,
+            grade_number(number, ...).text,
+            grade_number(number, "x").text,
+        )
     )
     if given := [secret for secret in secrets(number) if secret in told]:
         yield f"the answer is given away: {given}"
@@ -242,5 +248,5 @@ def test_wrong_answers_worked_out_by_hand(name, answer, words):
 
 
 def test_half_the_kp_leaves_more_than_twice_the_error():
-    softer, thesis = find("pid-1").right, list(find("pid-1").slips.values())[1]
+    softer, thesis = find("pid-1").right, list(find("pid-1").mistakes.values())[1]
     assert 2 < softer[1] / thesis[1] < 2.5

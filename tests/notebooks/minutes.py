@@ -51,10 +51,10 @@ def _counted(cells):
     here = [name for name in checked if stays(name)]
     lines = sum(bool(line.strip()) for line in code.splitlines())
     predictions, panels = len(re.findall(r"^predict\(", code, re.M)), len(PANEL.findall(code))
-    sizes = {name: _size(task(name).loan) - _size(task(name).given) for name in functions}
+    sizes = {name: _size(task(name).solution_text) - _size(task(name).given) for name in functions}
     before = {name: sizes[one] for one, name in pairwise(functions) if function_of(one) == function_of(name)}
     written = sum(_writing(size - before.get(name, 0)) for name, size in sizes.items())
-    written += sum(_writing(_size(of_notebook(name).loan)) for name in here)
+    written += sum(_writing(_size(of_notebook(name).solution_text)) for name in here)
     return 5 * round((len(text.split()) / 100 + 3 * predictions + 2 * panels + written + lines / 2) / 5)
 
 

@@ -15,6 +15,6 @@ WRONG = [
 
 def written(cell, old="", new=""):
     """The cell that asks for it, with the right lines in place of the dots, or with a mistake in them."""
-    right = of_notebook("circle").loan.partition("turned, rate, _ = ")[2].partition("\n")[2] + "\n"
+    right = of_notebook("circle").solution_text.partition("turned, rate, _ = ")[2].partition("\n")[2] + "\n"
     assert len(_NO_CIRCLE_YET.findall(cell)) == 1 and old in right
     return _NO_CIRCLE_YET.sub(lambda _: right.replace(old, new) if old else right, cell)

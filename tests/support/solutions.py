@@ -20,7 +20,7 @@ ORDER = (
 def source(name):
     """The text of one solution; of a stage on the way to one, the course's."""
     if "." in name:
-        return task(name).loan
+        return task(name).solution_text
     return (FOLDER / f"{name}.py").read_text(encoding="utf-8")
 
 

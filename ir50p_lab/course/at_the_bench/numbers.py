@@ -22,7 +22,7 @@ NUMBERS = (
         tolerance=2.6e-3,
         because="with half a sample or without",
         why="A PID behind this filter steers by where the joint was: that is why it swings.",
-        slips={
+        mistakes={
             "That is the lag in seconds: how far does the joint turn in that time?": _LAG,
             "1/(2 Hz) is the period of the cut-off; the lag is 2 pi times shorter.": _SPEED / _CUTOFF,
             "That is one sample late; this filter averages over many.": _SPEED * 0.01,
@@ -36,7 +36,7 @@ NUMBERS = (
         unit="rad",
         tolerance=1e-3,
         why="Seven degrees, by friction alone: this is why lowering Kp1 leaves a large error.",
-        slips={
+        mistakes={
             "That divides N m by PWM counts per rad: bring both to one unit with k.": _FS / _KP,
             "That is the Coulomb friction of a joint that moves; a joint at rest holds up to fs.": _FC / (_K * _KP),
             "Upside down: a larger Kp must leave a smaller error.": _K * _KP / _FS,

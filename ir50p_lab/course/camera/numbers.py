@@ -21,7 +21,7 @@ NUMBERS = (
         tolerance=3e-4,
         because="a third of a millimetre will do",
         why="The shift grows with the distance from the camera's foot: no constant offset can repair it.",
-        slips={
+        mistakes={
             "The radius is right only if the line of sight falls at 45 degrees: similar triangles.": _RADIUS,
             "That is the shift of the top of the ball: its centre is one radius above the table.": (
                 _shift(_LENS_HEIGHT, _AWAY, 2 * _RADIUS)

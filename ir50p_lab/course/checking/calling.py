@@ -7,7 +7,7 @@ import numpy as np
 
 from ir50p_lab.course.checking.explain_error import why_it_stops
 from ir50p_lab.course.checking.shape_checks import no_numbers
-from ir50p_lab.course.checking.task import Failed, is_run, shown
+from ir50p_lab.course.checking.task import Failed, is_run, short_text
 
 
 def check_signature(task, function, case):
@@ -24,7 +24,7 @@ def call(task, function, case):
     """What a function returns for a case; where it stops, the Failed that says why. Raises Failed for changed input."""
     mine = copy.deepcopy(case)
     try:
-        result = guarded(lambda: function(*mine), lambda: given(task, case))
+        result = call_or_fail(lambda: function(*mine), lambda: case_in_words(task, case))
     except Failed as stopped:
         if isinstance(stopped.__cause__, KeyboardInterrupt):
             raise
@@ -32,11 +32,11 @@ def call(task, function, case):
     for name, one, other in zip(task.signature, case, mine, strict=True):
         if not _untouched(one, other):
             says = f"it changes what it was given, `{name}`: work on a copy (`np.array(x)` makes one)"
-            raise Failed(says, given(task, case))
+            raise Failed(says, case_in_words(task, case))
     return result
 
 
-def guarded(do, case=str):
+def call_or_fail(do, case=str):
     """What `do` gives; case: function that names the case, called only when it fails. Raises Failed from the error."""
     try:
         with np.errstate(all="ignore"):
@@ -51,7 +51,7 @@ def guarded(do, case=str):
 
 def array_like(expected, function, *arguments, **named):
     """What a function in a view gives, as an array like the one expected; dots count as 0. Raises Failed."""
-    returned = guarded(lambda: function(*arguments, **named))
+    returned = call_or_fail(lambda: function(*arguments, **named))
     if isinstance(returned, np.ndarray) and returned.dtype == object:
         returned = np.where(returned == ..., 0, returned)
     if says := no_numbers(returned, expected):
@@ -63,7 +63,7 @@ def _untouched(before, after):
     return callable(before) or np.array_equal(np.asarray(before), np.asarray(after))
 
 
-def given(task, case):
+def case_in_words(task, case):
     """The arguments of a case in words."""
     named = sorted(zip(task.signature, case, strict=True), key=lambda one: is_run(one[1]))  # long ones at the end
-    return "for " + ", ".join(f"{name} = {shown(value)}" for name, value in named)
+    return "for " + ", ".join(f"{name} = {short_text(value)}" for name, value in named)

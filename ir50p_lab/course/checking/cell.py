@@ -25,7 +25,7 @@ class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never s
     """The cell cannot stand alone; the message says why and what to do."""
 
 
-def take(thing, name, earlier, given=""):
+def extract(thing, name, earlier, given=""):
     """Return the Source of a function or class as its cell has it.
 
     name: what it has to be called; earlier: names of the functions of `my_robot` it may lean on. Lines of the cell that
@@ -69,11 +69,11 @@ def take(thing, name, earlier, given=""):
     return Source(name, "\n\n\n".join(_lines(text, node) for node in wanted), tuple(sorted(calls)))
 
 
-def made(source, task):
+def compile_source(source, task):
     """The function of a Source with NumPy, math and the earlier functions, and nothing of the notebook."""
     room = {"np": np, "numpy": np, "math": math}
     for name in source.calls:
-        room[name] = student_package.load(name) if student_package.is_there(name) else task_of_name(name).right
+        room[name] = student_package.load(name) if student_package.is_there(name) else task_of_name(name).reference
     file = f"{ROOM} {task.name}>"
     linecache.cache[file] = (len(source.text), None, source.text.splitlines(keepends=True), file)
     exec(compile(source.text, file, "exec"), room)

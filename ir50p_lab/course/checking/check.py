@@ -6,10 +6,10 @@ import random
 import timeit
 
 from ir50p_lab.course import lab_book
-from ir50p_lab.course.checking.cell import CannotTake, has_dots, take
+from ir50p_lab.course.checking.cell import CannotTake, extract, has_dots
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.in_notebook import check_here
-from ir50p_lab.course.checking.note import Note, ended, show
+from ir50p_lab.course.checking.note import Note, show, with_full_stop
 from ir50p_lab.course.checking.numbers import check_number
 from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.lab_book.progress import record
@@ -38,14 +38,14 @@ def check(name, answer=...):
     except InputError as error:
         return _show("open", name, str(error))
     if answer is ...:
-        return _show("open", name, f"not written yet: {wanted.asks}")
+        return _show("open", name, f"not written yet: {wanted.returns}")
     try:
-        source = take(answer, wanted.function, wanted.leans_on, wanted.given)
+        source = extract(answer, wanted.function, wanted.leans_on, wanted.given)
     except CannotTake as reason:
-        return _show("wrong", name, f"not yet: {ended(str(reason))}")
+        return _show("wrong", name, f"not yet: {with_full_stop(str(reason))}")
     if dots := has_dots(source.text):
         where = f": dots still stand in `{dots[0]}`" if dots[0].strip(".") else ""
-        return _show("open", name, f"not written yet{where}. It returns {wanted.asks}.")
+        return _show("open", name, f"not written yet{where}. It returns {wanted.returns}.")
     result = grade(wanted, source)
     if result.state == "right":
         return _keep(source, wanted, result.says)
@@ -74,7 +74,7 @@ def _keep(source, wanted, remark):
         return _show("right", wanted.name, f"right, but it could not be kept: {error}")
     more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
     more += f" Your finished {wanted.function} was put aside, into my_robot/old: check it again last." if whole else ""
-    kind = "class" if wanted.tried else "function"
+    kind = "class" if wanted.trial else "function"
     text = f"right, and yours: from now on my_robot.{wanted.function} is this {kind}.{more} {remark}".rstrip()
     return _show("right", wanted.name, text, _beside(source, wanted))
 
@@ -83,10 +83,10 @@ def _beside(source, wanted):
     """Both listings, and both speeds of a function."""
     title = "yours beside the course's"
     if wanted.cases is not None:
-        case, both = wanted.cases()[0], (student_package.load(wanted.name), wanted.right)
+        case, both = wanted.cases()[0], (student_package.load(wanted.name), wanted.reference)
         speeds = [min(timeit.repeat(lambda f=f: f(*case), number=20, repeat=3)) / 20 * 1e6 for f in both]
         title += f": {speeds[0]:.0f} and {speeds[1]:.0f} microseconds a call"
-    return [(title, f"# yours\n{source.text}\n\n# the course's, without its checks\n{wanted.loan}")]
+    return [(title, f"# yours\n{source.text}\n\n# the course's, without its checks\n{wanted.solution_text}")]
 
 
 def _wrong(source, wanted, result):
@@ -98,7 +98,7 @@ def _wrong(source, wanted, result):
             marks.append(mark)
         return len(marks)
 
-    tries, says = 0, f"not yet: {ended(result.says)}"
+    tries, says = 0, f"not yet: {with_full_stop(result.says)}"
     try:
         tries = lab_book.change(edit)
     except lab_book.LabBookError as error:
@@ -112,7 +112,7 @@ def _wrong(source, wanted, result):
             f" The course lends you its {wanted.name}, so that you can go on; it is marked as a loan in your report."
         )
     elif tries >= _BEFORE_SCRAMBLE:
-        lines = [line for line in wanted.loan.splitlines() if line.strip()]
+        lines = [line for line in wanted.solution_text.splitlines() if line.strip()]
         random.Random(wanted.name).shuffle(lines)
         more.append(("the lines of a solution, in the wrong order", "\n".join(line.strip() for line in lines)))
     else:

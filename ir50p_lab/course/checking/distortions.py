@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, picked, table
+from ir50p_lab.course.checking.task import Mistake, nth_result, table
 
 _MANY = 6  # longer ones are runs: no part of them has a meaning of its own
 
@@ -37,7 +37,7 @@ def _of_arguments(task):
             if np.shape(case[k]) == np.shape(case[m]) and not (callable(case[k]) or callable(case[m])):
                 says = f"{task.signature[m]} and {task.signature[k]} have changed places"
                 order = [k if one == m else m if one == k else one for one in range(len(case))]
-                yield Mistake(lambda *case, order=order: task.right(*(case[one] for one in order)), says)
+                yield Mistake(lambda *case, order=order: task.reference(*(case[one] for one in order)), says)
 
 
 def _readings(name, value):
@@ -64,10 +64,10 @@ def _of_results(task):
         return
     for says, change in _changes("of_results"):
         yield Mistake(_result(task, change), says)
-    shape = np.shape(next(one for one in (task.right(*case) for case in task.cases()) if one is not None))
+    shape = np.shape(next(one for one in (task.reference(*case) for case in task.cases()) if one is not None))
     if not shape:
         return
-    parts = task.parts or [f"{'column' if len(shape) > 1 else 'number'} {j + 1}" for j in range(shape[-1])]
+    parts = task.entry_names or [f"{'column' if len(shape) > 1 else 'number'} {j + 1}" for j in range(shape[-1])]
     for j, part in enumerate(parts[:_MANY]):
         for says, change in _changes("of_parts"):
             yield Mistake(_result(task, _on_part(j, change)), says.format(part))
@@ -75,7 +75,7 @@ def _of_results(task):
             yield Mistake(_result(task, _swapped(i, j)), f"{parts[i]} and {part} have changed places")
         yield Mistake(_result(task, lambda y, j=j: y[..., j]), f"it returns {part} alone")
         yield Mistake(_result(task, lambda y, j=j: np.delete(y, j, axis=-1)), f"{part} is missing")
-    if len(shape) > 1 and task.same is None:
+    if len(shape) > 1 and task.compare is None:
         yield from _of_rows(task, shape)
 
 
@@ -92,7 +92,7 @@ def _of_order(task):
     """Yield Mistakes: of several results two in each other's place, or one alone."""
     names = task.results
     for j, name in enumerate(names):
-        yield Mistake(picked(task.right, j), f"it returns {name} alone: {', '.join(names)} are asked for")
+        yield Mistake(nth_result(task.reference, j), f"it returns {name} alone: {', '.join(names)} are asked for")
         for i in range(j):
             order = [j if one == i else i if one == j else one for one in range(len(names))]
             yield Mistake(_in_order(task, order), f"{names[i]} and {name} have changed places")
@@ -100,19 +100,19 @@ def _of_order(task):
 
 def _in_order(task, order):
     def wrong(*case):
-        right = task.right(*case)
+        right = task.reference(*case)
         return tuple(right[k] for k in order)
 
     return wrong
 
 
 def _reading(task, k, change):
-    return lambda *case: task.right(*case[:k], change(case[k]), *case[k + 1 :])
+    return lambda *case: task.reference(*case[:k], change(case[k]), *case[k + 1 :])
 
 
 def _result(task, change):
     def wrong(*case):
-        right = task.right(*case)
+        right = task.reference(*case)
         return right if right is None or np.size(right) == 0 else change(np.asarray(right, dtype=float))
 
     return wrong
@@ -179,8 +179,8 @@ def _arguments(task, cases):
 
 
 def _name(task, place):
-    if task.parts and len(place) == 1:
-        return task.parts[place[0]]
+    if task.entry_names and len(place) == 1:
+        return task.entry_names[place[0]]
     words = ("row", "column") if len(place) < 3 else ("number", "row", "column")
     return ", ".join(f"{word} {k + 1}" for word, k in zip(words, place, strict=False))
 

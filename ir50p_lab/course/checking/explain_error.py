@@ -7,7 +7,7 @@ import traceback
 
 import numpy as np
 
-from ir50p_lab.course.checking.note import ended
+from ir50p_lab.course.checking.note import with_full_stop
 from ir50p_lab.course.checking.task import table
 
 ROOM = "<my_robot"  # the file name of what is tried begins so
@@ -26,7 +26,7 @@ def why_it_stops(error):
     place = f" in `{line}`" if line else ""
     if not reason:
         return f"it stops{place}. {said}"
-    return f"it stops{place}: {ended(reason + operands)} {said if 'gufunc' not in said else ''}".rstrip()
+    return f"it stops{place}: {with_full_stop(reason + operands)} {said if 'gufunc' not in said else ''}".rstrip()
 
 
 def _usual(error):

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ir50p_lab.course.checking.calling import call, check_signature, given
-from ir50p_lab.course.checking.cell import made, written_wrong
+from ir50p_lab.course.checking.calling import call, case_in_words, check_signature
+from ir50p_lab.course.checking.cell import compile_source, written_wrong
 from ir50p_lab.course.checking.distortions import distortions, entries
 from ir50p_lab.course.checking.shape_checks import kind_of, no_numbers, number_of_results
-from ir50p_lab.course.checking.task import Failed, shown
+from ir50p_lab.course.checking.task import Failed, short_text
 from ir50p_lab.course.robot.source import Source
 
 
@@ -55,10 +55,10 @@ class _Trial:
 
 def grade(task, answer):
     """Return the Grade on a function or class, or on the Source of one, whatever it does."""
-    function = made(answer, task) if isinstance(answer, Source) else answer
+    function = compile_source(answer, task) if isinstance(answer, Source) else answer
     try:
-        if task.tried is not None:
-            return Grade("right", task.tried(function))
+        if task.trial is not None:
+            return Grade("right", task.trial(function))
         cases, before = task.cases(), _beside(function)
         check_signature(task, function, cases[0])
         returned = [call(task, function, case) for case in cases]
@@ -103,7 +103,7 @@ def _known(trial):
 
 def _mistakes(trial):
     """Yield those of the task, then the usual ones, all of them: what is said depends on the answer alone."""
-    yield from trial.task.slips
+    yield from trial.task.mistakes
     if not all(map(_is_zero, trial.returned)):  # zeros say too little to tell one from another
         yield from distortions(trial.task)
 
@@ -129,7 +129,7 @@ def _form(trial):
         one, other = returned[k], trial.expected[k]
         if task.results:
             says = number_of_results(task.results, one, other)
-        elif task.same is None and other is not None:
+        elif task.compare is None and other is not None:
             says = no_numbers(one, other)
         else:
             says = "" if one is None else kind_of(one)
@@ -164,12 +164,12 @@ def _listed(names):
 def _numbers(trial):
     """What numbers alone tell, whatever the function: all the same, whole, off by a constant, few of them wrong."""
     task, cases, returned, expected = trial.task, trial.cases, trial.returned, trial.expected
-    if task.same is not None or task.results or any(one is None for one in (*returned, *expected)):
+    if task.compare is not None or task.results or any(one is None for one in (*returned, *expected)):
         return ""
     if all(map(_is_zero, returned)):
         return "it is 0 for every input: is what it computes put into what it returns?"
     if all(np.array_equal(one, returned[0]) for one in returned):
-        return f"it returns the same for every input: {shown(returned[0])}"
+        return f"it returns the same for every input: {short_text(returned[0])}"
     if all(map(_is_whole, returned)) and not all(map(_is_whole, expected)):
         return "it holds whole numbers only: what was put in was cut off (an array of integers?)"
     return entries(task, cases, returned, expected) or _by_a_constant(returned, expected)
@@ -185,7 +185,9 @@ def _symptom(trial):
         return ""
     most = counts.most_common(1)[0][0]
     alike = [k for k, says in said.items() if _without_numbers(says) == most]
-    seen = (k for k in alike if shown(trial.returned[k]) != shown(trial.expected[k]))  # in the digits that are shown
+    seen = (
+        k for k in alike if short_text(trial.returned[k]) != short_text(trial.expected[k])
+    )  # in the digits that are shown
     trial.example = next(seen, alike[0])
     return said[trial.example]
 
@@ -222,7 +224,7 @@ def _is_mistake(task, mistake, case, returned):
     """Tell whether a mistake gives the same answer, or stops as this one does."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
-            wrong = mistake.wrong(*copy.deepcopy(case))
+            wrong = mistake.function(*copy.deepcopy(case))
     except Exception as error:
         return isinstance(returned, Failed) and type(returned.__cause__) is type(error)
     return _agrees(task, returned, wrong)
@@ -268,7 +270,7 @@ def _without_numbers(says):
 def _grade_use(task, cases, returned, expected):
     """The numbers are right; what the next functions need is an array, too."""
     for case, one, other in zip(cases, returned, expected, strict=True):
-        if task.form is not None and (says := task.form(one)):
+        if task.check_form is not None and (says := task.check_form(one)):
             return Grade("wrong", says, _example(task, case, other, one))
         for mine, right in zip(one, other, strict=True) if task.results else ((one, other),):
             if isinstance(right, np.ndarray) and not isinstance(mine, np.ndarray) and np.size(mine):
@@ -286,10 +288,10 @@ def _example(task, case, expected, returned):
         return returned.args[1]
     unit = f" {task.unit}" if task.unit else ""
     both = _answer(task, expected), _answer(task, returned)
-    return f"{given(task, case)}\nexpected{unit}: {both[0]}\nyours: {both[1]}" if both[0] != both[1] else ""
+    return f"{case_in_words(task, case)}\nexpected{unit}: {both[0]}\nyours: {both[1]}" if both[0] != both[1] else ""
 
 
 def _answer(task, value):
     if not task.results or number_of_results(task.results, value, value):
-        return shown(value)
-    return ", ".join(f"{name} = {shown(one)}" for name, one in zip(task.results, value, strict=True))
+        return short_text(value)
+    return ", ".join(f"{name} = {short_text(one)}" for name, one in zip(task.results, value, strict=True))

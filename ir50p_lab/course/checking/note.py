@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 
 # Okabe-Ito colours (safe for colour-blind readers); the words carry the meaning, the bar only supports it.
-_COLOURS = {"right": "#009E73", "open": "#999999", "slip": "#E69F00", "wrong": "#E69F00"}
+_COLOURS = {"right": "#009E73", "open": "#999999", "mistake": "#E69F00", "wrong": "#E69F00"}
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,6 @@ def show(note: Note) -> None:
     display(note)
 
 
-def ended(says):
+def with_full_stop(says):
     """A sentence with its full stop; a question has its mark already."""
     return says if says.endswith(("?", ".")) else f"{says}."

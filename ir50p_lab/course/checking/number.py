@@ -3,13 +3,13 @@
 A subject's own are data in its `numbers.py`, found there by their names:
 
     NUMBERS = (
-        Number("dyn-6", "04_inertia", "the gear ratio N with which ...", N, tolerance=0.5, why=..., slips=...),
+        Number("dyn-6", "04_inertia", "the gear ratio N with which ...", N, tolerance=0.5, why=..., mistakes=...),
     )
 
 Rules for authors (`tests/course/test_numbers_of_rooms.py` tries every one, and asks for another route to it):
 - `right` comes from the package and from constants of the file (IR50P, not load_arm()): no variable of the student's,
   no other arm, may move it. The notebook states the same constants.
-- At least three slips, sign and unit included (those are known: `_COMMON`), none equal to another or to the right
+- At least three mistakes, sign and unit included (those are known: `_COMMON`), none equal to another or to the right
   answer. Their sentences say what is wrong and where to look, never the answer.
 - At most two a notebook, in its order.
 """
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_COMMON = {  # slips that are known without being told, of any unit ("") and of one
+_COMMON = {  # mistakes that are known without being told, of any unit ("") and of one
     "": {"The size is right, the sign is not: which direction counts as positive?": np.negative},
     "rad": {"That is in degrees; inside the package every angle is in radians.": np.rad2deg},
     "m": {"That is in millimetres, not in metres.": lambda right: 1000 * right},
@@ -33,10 +33,10 @@ class Number:
     task: the question in one line, without a full stop. right: number or array.
     tolerance: largest absolute difference of an entry that still counts as right; because: why that much.
     why: one line that a right answer earns.
-    slips: {what to say: a typical wrong answer, or a function of the right one (np.negative)}.
+    mistakes: {what to say: a typical wrong answer, or a function of the right one (np.negative)}.
     unit: what the numbers are in, "rad", "m", "N m"; "" for none or several.
     angle: the entries are angles in rad, equal modulo 2 pi.
-    hint: said to a wrong answer that is no known slip.
+    hint: said to a wrong answer that is no known mistake.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Number:
     right: float | np.ndarray
     tolerance: float
     why: str
-    slips: dict
+    mistakes: dict
     unit: str = ""
     because: str = "it allows for rounding"
     angle: bool = False
@@ -61,10 +61,10 @@ class Number:
         return shape_in_words(self.right.shape) + f" in {self.unit}" * bool(self.unit)
 
     @property
-    def every_slip(self):
+    def every_mistake(self):
         """{what to say: wrong answer}: its own, then the common ones."""
-        slips = self.slips | _COMMON[""] | _COMMON.get(self.unit, {})
-        return {message: wrong(self.right) if callable(wrong) else wrong for message, wrong in slips.items()}
+        mistakes = self.mistakes | _COMMON[""] | _COMMON.get(self.unit, {})
+        return {message: wrong(self.right) if callable(wrong) else wrong for message, wrong in mistakes.items()}
 
     def near(self, found, target, tolerance):
         """Tell for each entry whether it is as near to that of the target as the tolerance."""

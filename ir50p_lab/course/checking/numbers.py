@@ -50,8 +50,8 @@ def solution(name):
     for an unknown name, and for a function that is still to come.
     """
     if stays(str(name)):
-        return of_notebook(name).loan
-    return task(name).loan if is_function(str(name)) else find(name).right.copy()[()]
+        return of_notebook(name).solution_text
+    return task(name).solution_text if is_function(str(name)) else find(name).right.copy()[()]
 
 
 def everything(holding=""):
@@ -79,7 +79,7 @@ def find(name):
 def grade_number(number, answer):
     """Compare an answer with the right one: a Note. Never raises, whatever the answer does.
 
-    Its state is "open" (still the stub), "right", "slip" (a known one), "wrong", or "unreadable".
+    Its state is "open" (still the stub), "right", "mistake" (a known one), "wrong", or "unreadable".
     """
     try:
         state, text = _compared(number, answer)
@@ -102,10 +102,10 @@ def _compared(number, answer):
         raise _Unreadable(shape_in_words(found.shape))
     if np.all(number.near(found, number.right, number.tolerance)):
         return "right", f"right. {number.why}"
-    for message, wrong in number.every_slip.items():
+    for message, wrong in number.every_mistake.items():
         growth = max(1.0, np.max(np.abs(wrong)) / np.max(np.abs(number.right)))  # in mm: 1000 times less exact
         if np.all(number.near(found, wrong, growth * number.tolerance)):
-            return "slip", f"not yet, found {_shown(found)}. {message}"
+            return "mistake", f"not yet, found {_shown(found)}. {message}"
     extra = " ".join(filter(None, (_remark(number, found), number.hint)))
     return "wrong", f"not yet, found {_shown(found)}; expected {number.wanted}: {number.task}. {extra}"
 

@@ -21,11 +21,11 @@ class Failed(Exception):  # noqa: N818  (becomes a sentence)
 class Mistake:
     """A typical mistake.
 
-    wrong: a function with the task's arguments that makes this mistake. says: the symptom in the student's numbers and
+    function: has the task's arguments and makes this mistake. says: the symptom in the student's numbers and
     where to look, never the corrected expression.
     """
 
-    wrong: Callable
+    function: Callable
     says: str
 
 
@@ -35,7 +35,7 @@ def text_of(*functions):
     return "\n\n".join(texts).rstrip()
 
 
-def changed(text, changes, names):
+def apply_changes(text, changes, names):
     """What a text defines, over `names`, with changes in it: "old -> new". Raises ValueError where no old is."""
     for old, new in (map(str.strip, change.split("->")) for change in changes):
         text.index(old)  # a change that would change nothing
@@ -83,7 +83,7 @@ def changes_of(text):
 
 def wrong_one(function, changes):
     """The function with these changes in its text."""
-    return changed(text_of(function), changes, {"np": np, **function.__globals__})[function.__name__]
+    return apply_changes(text_of(function), changes, {"np": np, **function.__globals__})[function.__name__]
 
 
 def mistakes(function):
@@ -92,7 +92,7 @@ def mistakes(function):
     return tuple(Mistake(wrong_one(function, changes), says) for says, changes in changes_of(text))
 
 
-def picked(function, result):
+def nth_result(function, result):
     """A function that gives one of several results of another."""
     return lambda *case: function(*case)[result]
 
@@ -101,40 +101,40 @@ def picked(function, result):
 class Task:
     """A function of `my_robot`.
 
-    name: of the function; asks: one line, what it returns; right: the course's own answer, a function of the same
-    arguments; signature: their names.
+    name: of the function; returns: one line, what it gives back; reference: the course's own answer, a function of the
+    same arguments; signature: their names.
     cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
-    slips: mistakes with a sentence of their own, most specific first; the usual ones need none (`distortions`);
-    rights: functions of several results that are right as well;
-    parts: names of what stands beside each other in the answer.
-    results: names, where several things are returned: each is graded by itself; `tolerance` and `same` may be tuples
+    mistakes: those with a sentence of their own, most specific first; the usual ones need none (`distortions`);
+    also_right: functions of several results that are right as well;
+    entry_names: of what stands beside each other in the answer.
+    results: names, where several things are returned: each is graded by itself; `tolerance` and `compare` may be tuples
     then, one for each.
-    symptom: function of (case, returned, expected) that returns a sentence about a mistake no slip covers, or "".
-    form: function of one right answer; a sentence if later functions cannot use it as it is, or "".
-    hints: two, opened on demand; loan: a plain solution, as text, whose names are words.
-    same: compares what came back with what was expected; None: equal within tolerance. unit: of what comes back.
+    symptom: function of (case, returned, expected) that returns a sentence about what no mistake covers, or "".
+    check_form: function of one right answer; a sentence if later functions cannot use it as it is, or "".
+    hints: two, opened on demand; solution_text: a plain solution, whose names are words; it is what is lent.
+    compare: tells whether what came back is what was expected; None: equal within tolerance. unit: of what comes back.
     test: its small test, as text; needed where an argument is a function.
-    A class, or a function of keywords alone, has no cases; tried: function of it, raises `Failed` or returns a remark
-    on a right answer ("": none); right: what stands in.
+    A class, or a function of keywords alone, has no cases; trial: function of it, raises `Failed` or returns a remark
+    on a right answer ("": none); reference: what stands in.
     """
 
     name: str
-    asks: str
-    right: Callable
-    loan: str
+    returns: str
+    reference: Callable
+    solution_text: str
     cases: Callable | None = None
     leans_on: tuple = ()
-    slips: tuple = ()
-    rights: tuple = ()
-    parts: tuple = ()
+    mistakes: tuple = ()
+    also_right: tuple = ()
+    entry_names: tuple = ()
     results: tuple = ()
     symptom: Callable | None = None
-    form: Callable | None = None
+    check_form: Callable | None = None
     hints: tuple = ("", "")
-    same: Callable | tuple | None = None
+    compare: Callable | tuple | None = None
     tolerance: float | tuple = 1e-9
     unit: str = ""
-    tried: Callable | None = None
+    trial: Callable | None = None
     test: str = ""
     signature: tuple = ()
     given: str = ""  # text of helpers that the notebook shows: a student need not write them
@@ -143,21 +143,21 @@ class Task:
 
     def __post_init__(self):
         """Take the names of the arguments from the right answer; further options are the course's own affair."""
-        found = inspect.signature(self.right).parameters.values()
+        found = inspect.signature(self.reference).parameters.values()
         names = tuple(one.name for one in found if one.kind != one.VAR_KEYWORD)
         object.__setattr__(self, "signature", self.signature or names)
         object.__setattr__(self, "function", self.name.partition(".")[0])
 
     def of(self, result):
         """The task of one of several results alone."""
-        slips = tuple(replace(one, wrong=picked(one.wrong, result)) for one in self.slips)
+        mistakes = tuple(replace(one, function=nth_result(one.function, result)) for one in self.mistakes)
         return replace(
             self,
-            right=picked(self.right, result),
-            slips=slips,
-            same=self._of_each(self.same)[result],
+            reference=nth_result(self.reference, result),
+            mistakes=mistakes,
+            compare=self._of_each(self.compare)[result],
             tolerance=self._of_each(self.tolerance)[result],
-            rights=(),
+            also_right=(),
             results=(),
             symptom=None,
             result=result,
@@ -166,14 +166,14 @@ class Task:
     def agrees(self, returned, expected):
         """Tell whether what came back is what was expected. Raises TypeError, ValueError for what is no answer."""
         if not self.results:
-            return _agrees(returned, expected, self.same, self.tolerance)
-        each = zip(returned, expected, self._of_each(self.same), self._of_each(self.tolerance), strict=True)
+            return _agrees(returned, expected, self.compare, self.tolerance)
+        each = zip(returned, expected, self._of_each(self.compare), self._of_each(self.tolerance), strict=True)
         return all(_agrees(*one) for one in each)
 
     def expected(self, case, returned):
         """The right answer to a case: of several (`rights`) the one that came back, result by result."""
-        right = self.right(*case)
-        for other in self.rights:
+        right = self.reference(*case)
+        for other in self.also_right:
             also = other(*case)
             try:
                 each = zip(returned, right, also, self._of_each(self.tolerance), strict=True)
@@ -192,8 +192,8 @@ def task_of(right, *, helpers=(), **options):
     helpers: functions that it calls and a student has to write along; options: what else a Task has.
     """
     name, file = right.__name__, inspect.getfile(right)
-    options = {"slips": mistakes(right)} | words(name, file) | options
-    return Task(name=name, right=right, loan=text_of(*helpers, right), **options)
+    options = {"mistakes": mistakes(right)} | words(name, file) | options
+    return Task(name=name, reference=right, solution_text=text_of(*helpers, right), **options)
 
 
 def words(name, beside):
@@ -201,7 +201,7 @@ def words(name, beside):
     text = sections(name, beside)
     hints = tuple(hint.replace("\n", " ") for hint in text["hints"].split("\n\n"))
     test = text["test"] + "\n" if "test" in text else ""
-    return {"asks": text["returns"].replace("\n", " "), "hints": hints, "test": test}
+    return {"returns": text["returns"].replace("\n", " "), "hints": hints, "test": test}
 
 
 def notebook_tasks(beside, **asked):
@@ -211,7 +211,7 @@ def notebook_tasks(beside, **asked):
     """
     texts = sections("notebook_functions", beside)
     return {
-        name: Task(name, asks, right, loan=texts[name], cases=cases, **options)
+        name: Task(name, asks, right, solution_text=texts[name], cases=cases, **options)
         for name, (right, cases, asks, options) in asked.items()
     }
 
@@ -228,12 +228,12 @@ def is_run(value):
     return np.ndim(value) == 1 and len(value) > _LONG
 
 
-def shown(value):
+def short_text(value):
     """A value as a student writes it, short."""
     if value is None:
         return "None"
     if isinstance(value, tuple):
-        return "(" + ", ".join(map(shown, value)) + ")"
+        return "(" + ", ".join(map(short_text, value)) + ")"
     if callable(value):
         meaning = (inspect.getdoc(value) or "").partition("\n")[0]
         return f"the function {getattr(value, '__name__', '')}" + (f" ({meaning})" if meaning else "")

@@ -1,11 +1,11 @@
-"""Functions of 04 and 05 that stay in their notebook: the course's, what each is tried on, typical slips."""
+"""Functions of 04 and 05 that stay in their notebook: the course's, what each is tried on, typical mistakes."""
 
 import numpy as np
 
 from ir50p_lab.course.checking.task import Mistake, notebook_tasks
 from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.kinematics.functions.jacobian import jacobian
-from ir50p_lab.course.robot.parts import parts
+from ir50p_lab.course.robot.arm_numbers import parts
 from ir50p_lab.modelling import coriolis_matrix, forward_dynamics, gravity, inverse_dynamics, load_arm, mass_matrix
 
 
@@ -93,7 +93,7 @@ def _states(arguments):
     return [tuple(row) for row in rows]
 
 
-# ------------------------------------------------------------------------------------------------- typical slips
+# ------------------------------------------------------------------------------------------------- typical mistakes
 def _whole_acceleration(J, M, direction):
     return 1 / np.linalg.norm(J @ np.linalg.solve(M, J.T @ direction))
 
@@ -165,15 +165,15 @@ TASKS = notebook_tasks(
     __file__,
     centres=(centres, _places, "the three centres, (3, 3), a row a link", {"unit": "m"}),
     heaviness=(heaviness, _tips, "kilograms; np.inf where nothing starts", {
-        "slips": (Mistake(_whole_acceleration, _TOO_MUCH), Mistake(_not_turned, _TURN), Mistake(_not_solved, _SOLVE),
+        "mistakes": (Mistake(_whole_acceleration, _TOO_MUCH), Mistake(_not_turned, _TURN), Mistake(_not_solved, _SOLVE),
                   Mistake(_guided, _SLOT)), "tolerance": 1e-6, "unit": "kg"}),
     shoulder_holds=(shoulder_holds, _loads, "the torque of the shoulder, a number in N m", {
-        "slips": (Mistake(_without_g, _G), Mistake(_load_alone, _LINKS)), "tolerance": 1e-6, "unit": "N m"}),
+        "mistakes": (Mistake(_without_g, _G), Mistake(_load_alone, _LINKS)), "tolerance": 1e-6, "unit": "N m"}),
     lump_torque=(lump_torque, lambda: _states(2), "three torques, N m", {
-        "slips": (Mistake(_pushed_at_the_tip, _PLACE),), "tolerance": 1e-4, "unit": "N m"}),
+        "mistakes": (Mistake(_pushed_at_the_tip, _PLACE),), "tolerance": 1e-4, "unit": "N m"}),
     torque=(torque, lambda: _states(3), "three torques, N m", {
-        "slips": (Mistake(_speeds_forgotten, _H), Mistake(_weight_lifts, _SIGN)), "tolerance": 1e-3, "unit": "N m"}),
+        "mistakes": (Mistake(_speeds_forgotten, _H), Mistake(_weight_lifts, _SIGN)), "tolerance": 1e-3, "unit": "N m"}),
     acceleration=(acceleration, lambda: _states(3), "three accelerations, rad/s²", {
-        "slips": (Mistake(_nothing_taken_off, _LEFT), Mistake(_free_of_speeds, _H), Mistake(_taken_off_late, _LATE),
+        "mistakes": (Mistake(_nothing_taken_off, _LEFT), Mistake(_free_of_speeds, _H), Mistake(_taken_off_late, _LATE),
                   Mistake(_by_the_diagonal, _ROWS)), "tolerance": 0.02, "unit": "rad/s²"}),
 )  # fmt: skip

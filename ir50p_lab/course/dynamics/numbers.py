@@ -25,7 +25,7 @@ NUMBERS = (
         tolerance=0.5,
         because="nobody cuts half a tooth",
         why="The rotor, seen through that gear, is as heavy as the load: half of the torque turns the motor itself.",
-        slips={
+        mistakes={
             "That is load by rotor, which is N^2: which gear has that square?": _BEST**2,
             "That is next to nothing: is it upside down, rotor by load? The motor turns faster than the joint.": 1
             / _BEST,
@@ -40,7 +40,7 @@ NUMBERS = (
         unit="kg",
         tolerance=2e-3,
         why="Bending the elbow brings the load in: stretched and level it is a quarter less.",
-        slips={
+        mistakes={
             "The arm itself weighs on the shoulder, too: the load gets what it leaves of the torque.": _STALL / _PER_KG,
             "The angles are taken in degrees: cos and sin want radians.": _BY_DEGREES,
             "That is a force in N; a kilogram weighs 9.81 N.": IR50P.g * _HEAVIEST,

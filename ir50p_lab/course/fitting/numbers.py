@@ -16,7 +16,7 @@ NUMBERS = (
         _STEP,
         tolerance=2e-3,
         why="One sample explains most of itself: the new estimate predicts 8.45 where 9 was measured.",
-        slips={
+        mistakes={
             "That has the inverse of P inside the bracket, as (2.44) is printed.": (
                 _THETA + _P * _PHI / (1 + _PHI / _P * _PHI) * (_Y - _PHI * _THETA)
             ),
@@ -36,7 +36,7 @@ NUMBERS = (
         tolerance=0.4,
         because="it is a whole number",
         why="Three have no effect, and two pairs act as one each: theta2 with theta9, theta5 with theta10.",
-        slips={
+        mistakes={
             "That is with joint 1 free; clamped, its velocity and acceleration are zero.": 18,
             "Three columns vanish, right; but of those left some have become the same: compare them.": 15,
             "The offset Tf1 needs no motion: joint 1 still shows what it pushes with.": 14,

@@ -15,7 +15,7 @@ NUMBERS = (
         unit="px",
         tolerance=0.1,
         why="So the radii to search for follow from the camera and the work area: they need no trial.",
-        slips={
+        mistakes={
             "That is the diameter: the mistake of 4.5.1 again.": 2 * _F * _BALL / _AWAY,
             "That is for a ball at 1 m: divide by the distance.": _F * _BALL,
             "A ball further away looks smaller: divide by the distance.": _F * _AWAY * _BALL,

@@ -1,8 +1,8 @@
-"""Functions of 02 and 03 that stay in their notebook: the course's, what each is tried on, typical slips."""
+"""Functions of 02 and 03 that stay in their notebook: the course's, what each is tried on, typical mistakes."""
 
 import numpy as np
 
-from ir50p_lab.course.checking.calling import guarded
+from ir50p_lab.course.checking.calling import call_or_fail
 from ir50p_lab.course.checking.task import Failed, Mistake, notebook_tasks
 from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.kinematics.functions.jacobian import jacobian
@@ -49,7 +49,7 @@ def _walked(function):
     """Try a loop along two lines; raises Failed where a place has no answer, or another one."""
     for ends in ([0.25, 0.30, 0.10], [0.15, -0.30, 0.30]), ([0.25, 0.20, 0.10], [0.45, -0.20, 0.30]):
         places, start = np.linspace(*ends, 21), np.array([0, 0.8, -0.8])
-        way = guarded(lambda places=places, start=start: list(function(places, start)))
+        way = call_or_fail(lambda places=places, start=start: list(function(places, start)))
         if len(way) != len(places):
             raise Failed(f"{len(way)} answers for {len(places)} places: each place has one, None too", "")
         for number, (pose, right) in enumerate(zip(way, along(places, start), strict=True), start=1):
@@ -89,8 +89,8 @@ _SUM = "the torques are added up: each motor has a limit of its own"
 
 TASKS = notebook_tasks(
     __file__,
-    along=(along, None, "a list: for each place its pose, or None", {"tried": _walked}),
+    along=(along, None, "a list: for each place its pose, or None", {"trial": _walked}),
     pace=(pace, _ways, "the greatest speed of the tip that way, m/s",
-          {"slips": (Mistake(_all_at_full_speed, _FULL), Mistake(_of_length, _LENGTH))}),
-    push=(push, _pushes, "the greatest force of the tip that way, N", {"slips": (Mistake(_torques_added, _SUM),)}),
+          {"mistakes": (Mistake(_all_at_full_speed, _FULL), Mistake(_of_length, _LENGTH))}),
+    push=(push, _pushes, "the greatest force of the tip that way, N", {"mistakes": (Mistake(_torques_added, _SUM),)}),
 )  # fmt: skip

@@ -30,7 +30,7 @@ NUMBERS = (
         tolerance=1e-3,
         because="a millimetre is what this arm can resolve",
         why="It is the last column of the inverse: -R^T t, the way back, measured along the axes of {B}.",
-        slips={
+        mistakes={
             "That is -t, still measured along the axes of {A}; the answer wants those of {B}.": -_T,
             "That is -R t; coordinates of {A} go to {B} with the transposed matrix.": -_R @ _T,
             "That points from {A} to {B}; the question is where {A} lies, seen from {B}.": _R.T @ _T,
@@ -46,7 +46,7 @@ NUMBERS = (
         tolerance=1e-3,
         because="a millimetre per second is what this arm can resolve",
         why="v = Jv qd: three numbers of nine, and they change with every pose.",
-        slips={
+        mistakes={
             "That is Jv^T qd: columns belong to joints, so Jv stands on the left as it is.": _JV.T @ _QD,
             "Rows 1 and 2 came out the same: that is the derivative of the printed (1.45).": _JV[[0, 0, 2]] @ _QD,
             "The pose went in as degrees; the functions take radians.": jacobian(IR50P, np.rad2deg(_Q) % (2 * np.pi))[
@@ -68,7 +68,7 @@ NUMBERS = (
         tolerance=1e-3,
         angle=True,
         why="At +90 degrees only the sum of the outer angles matters; at -90 degrees it is their difference.",
-        slips={
+        mistakes={
             "That is the difference, which counts at -90 degrees; try it in the matrix.": _FIRST - _THIRD,
             "The third turn got lost: without it the rotation is another one.": _FIRST,
             "That is the third turn alone; the first one is still there.": _THIRD,

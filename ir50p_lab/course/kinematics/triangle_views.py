@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.patches import Circle
 
-from ir50p_lab.course.checking.calling import Failed, guarded
+from ir50p_lab.course.checking.calling import Failed, call_or_fail
 from ir50p_lab.course.checking.note import Note, show
 from ir50p_lab.course.draw.arm3d import SideView
 from ir50p_lab.course.draw.sketch import arc, from_above, line, name
@@ -147,9 +147,9 @@ def allowed_map(arm, allowed, free=None):
         return np.array([min(len(poses(p)), 2) for p in places])
 
     try:
-        count, left = guarded(lambda: (counted(allowed), counted(free or allowed)))
+        count, left = call_or_fail(lambda: (counted(allowed), counted(free or allowed)))
     except Failed as failed:
-        return show(Note("slip", "no map", failed.args[0]))
+        return show(Note("mistake", "no map", failed.args[0]))
     kind = np.where((count > 0) & (left == 0), 3, left)
     colours = ("light", "sky", "blue", "orange")
     labels = ("no pose", "one pose", "two or more", "only through the column")

@@ -12,7 +12,7 @@ import numpy as np
 import traitlets
 
 from ir50p_lab.browser_tab import IN_BROWSER, needs_more
-from ir50p_lab.course.checking.calling import guarded
+from ir50p_lab.course.checking.calling import call_or_fail
 from ir50p_lab.course.checking.note import Note, show
 from ir50p_lab.course.checking.shape_checks import no_numbers
 from ir50p_lab.course.checking.task import Failed
@@ -127,10 +127,10 @@ class LiveArm(anywidget.AnyWidget):
             self._pose(self.q)
         except Failed as stopped:
             self._frames, self.options = None, self.options | {"badge": "the course's"}
-            show(Note("slip", "the arm below is the course's", stopped.args[0]))
+            show(Note("mistake", "the arm below is the course's", stopped.args[0]))
 
     def _pose(self, q):
-        T = guarded(lambda: self._frames(np.array(q)))
+        T = call_or_fail(lambda: self._frames(np.array(q)))
         if says := no_numbers(T, np.full((4, 4, 4), np.nan)):  # numbers that are not finite are left out
             raise Failed(f"of frames 0 to 3: {says}")
         T = np.array(T, dtype=float)
@@ -169,7 +169,7 @@ class LiveArm(anywidget.AnyWidget):
             elif "picture" in message:
                 buffers = [still_png(self)]
             else:
-                q = guarded(lambda: self._on_drag(np.array(message["drag"]), np.array(message["q"])))
+                q = call_or_fail(lambda: self._on_drag(np.array(message["drag"]), np.array(message["q"])))
                 if q is not None:
                     self.q = answer["drag"] = vectors3("q", q).tolist()
         except Exception as error:

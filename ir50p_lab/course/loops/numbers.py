@@ -30,7 +30,7 @@ NUMBERS = (
         tolerance=2e-4,
         because="the error bends the arm: solve, do not take g at q_d",
         why="Half the Kp leaves more than twice the error: the arm that sags has other weights to carry.",
-        slips={
+        mistakes={
             "That takes the weight at the set point; the arm rests lower, where its weight is another.": (
                 gravity(THESIS_A, _SET_POINT) / _KP
             ),
@@ -48,7 +48,7 @@ NUMBERS = (
         tolerance=2e-5,
         because="a tenth of a millisecond more would grow already",
         why="A stiffer damper needs a faster computer: the product Kd T has a limit, set by the inertia.",
-        slips={
+        mistakes={
             "At that period the speed is brought to zero in one sample: the best, not the longest.": _M3 / _KD3,
             "Upside down: that is a frequency, in 1/s.": 2 * _KD3 / _M3,
             "That is in milliseconds; the question asks for seconds.": 2000 * _M3 / _KD3,

@@ -1,4 +1,4 @@
-"""Functions of 06 and 07 that stay in their notebook: the course's, what each is tried on, typical slips."""
+"""Functions of 06 and 07 that stay in their notebook: the course's, what each is tried on, typical mistakes."""
 
 import numpy as np
 
@@ -73,7 +73,7 @@ def _motions():
     return [tuple(row) for row in np.random.default_rng(63).uniform(-1, 1, (6, 3, 3))]
 
 
-# ------------------------------------------------------------------------------------------------- typical slips
+# ------------------------------------------------------------------------------------------------- typical mistakes
 def _lets_it_back(speed, taken):
     return speed - np.sign(speed) * taken
 
@@ -129,13 +129,13 @@ _BOTH = "friction and the motor's own brake cost counts, too"
 TASKS = notebook_tasks(
     __file__,
     falling=(falling, _states, "six rates: of three angles and of three speeds", {
-        "slips": (Mistake(_angles_stand, _STAND), Mistake(_angles_for_speeds, _ANGLES)), "tolerance": 0.02}),
+        "mistakes": (Mistake(_angles_stand, _STAND), Mistake(_angles_for_speeds, _ANGLES)), "tolerance": 0.02}),
     halve=(halve, _limits, "the shortest time that is enough, s", {"tolerance": 0.01, "unit": "s"}),
     slide=(slide, _slides, "the speed that is left, rad/s", {
-        "slips": (Mistake(_lets_it_back, _BACK), Mistake(_one_sided, _SIDE))}),
+        "mistakes": (Mistake(_lets_it_back, _BACK), Mistake(_one_sided, _SIDE))}),
     motor_factors=(motor_factors, _motors, "gain and damping, two numbers", {
-        "results": ("gain", "damping"), "slips": (Mistake(_one_gear, _TWICE), Mistake(_of_volts, _PER_VOLT))}),
+        "results": ("gain", "damping"), "mistakes": (Mistake(_one_gear, _TWICE), Mistake(_of_volts, _PER_VOLT))}),
     counts_for=(counts_for, _motions, "the counts, three numbers", {
-        "slips": (Mistake(_no_friction, _RUBS), Mistake(_friction_helps, _HELPS), Mistake(_no_brake, _TURNS),
+        "mistakes": (Mistake(_no_friction, _RUBS), Mistake(_friction_helps, _HELPS), Mistake(_no_brake, _TURNS),
                   Mistake(_neither, _BOTH)), "tolerance": 0.05, "unit": "counts"}),
 )  # fmt: skip

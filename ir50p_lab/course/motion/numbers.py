@@ -37,7 +37,7 @@ NUMBERS = (
         unit="s",
         tolerance=0.01,
         why="One joint decides, here the shoulder; the others have time to spare. 07 asks in counts.",
-        slips={
+        mistakes={
             "That is for an even speed: half way a quintic is faster.": np.max(_TIMES) * 8 / 15,
             "That is the waist's time; all three have to keep their speed.": _TIMES[0],
             "That is the elbow's time; another joint needs longer.": _TIMES[2],
@@ -53,7 +53,7 @@ NUMBERS = (
         unit="rad",
         tolerance=1e-3,
         why="Within 0.05 rad of the target, friction over spring, it may rest anywhere: dry friction leaves an error.",
-        slips={
+        mistakes={
             "Within 0.05 rad of its target the spring is too weak to move it: it need not get there.": 0.0,
             "That is the first turning point; the spring pulls it back from there.": 2 * _FC / _KP - _START,
             "Each half swing costs 0.1 rad: friction moves its centre by 0.05 rad, and a swing has two sides.": (
@@ -74,7 +74,7 @@ NUMBERS = (
         unit="V",
         tolerance=5e-3,
         why="The gear multiplies the rotor's inertia by N^2: 0.2 kg m^2 here, more than the forearm has.",
-        slips={
+        mistakes={
             "The motor turns N times as fast as the joint: its back-EMF is ke N qd.": _VOLTS - _BACK_EMF * 49 / 50,
             "The back-EMF ke N qd is missing: a turning motor works against its supply.": _VOLTS - _BACK_EMF,
             "The rotor's inertia is taken N times, as in the thesis; at the joint it counts N^2 times.": (

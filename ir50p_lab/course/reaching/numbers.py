@@ -21,7 +21,7 @@ NUMBERS = (
         tolerance=0.1,
         because="a tenth of a millimetre shows the right lever",
         why="Lever over slope: one count costs millimetres, so single readings are not good enough.",
-        slips={
+        mistakes={
             "That is how far it moves per radian; one count is a small part of one.": 1e3 * _LEVER,
             "That is the angle of one count, in mrad: the lever is missing.": 1e3 / _SLOPE,
             "That is the lever of the stretched arm; here the elbow is bent.": 1e3 * (IR50P.l[1] + IR50P.l[2]) / _SLOPE,

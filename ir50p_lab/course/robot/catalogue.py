@@ -32,7 +32,8 @@ IN_NOTEBOOK = {  # functions that stay in their notebook, and the room in which 
     **dict.fromkeys(("along", "pace", "push"), "kinematics"),
     **dict.fromkeys(("centres", "heaviness", "shoulder_holds", "lump_torque", "torque", "acceleration"), "dynamics"),
     **dict.fromkeys(("falling", "halve", "slide", "motor_factors", "counts_for"), "motion"),
-    **dict.fromkeys(("circle", "once_round"), "at_the_bench"),
+    "rule": "loops",
+    **dict.fromkeys(("circle", "motor_law", "once_round"), "at_the_bench"),
     **dict.fromkeys(("carry", "cancel", "model", "pushes", "into", "planned"), "torque"),
 }
 _at = {}  # stage of each function that this session works on
@@ -60,7 +61,7 @@ def stays(name):
 
 @cache
 def is_written(name):
-    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its slips in NAME.txt."""
+    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its mistakes in NAME.txt."""
     name = function_of(name)
     return (Path(__file__).parents[1] / ROOMS[name] / "functions" / f"{name}.py").exists()
 

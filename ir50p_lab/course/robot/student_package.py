@@ -11,6 +11,7 @@ import numpy as np
 from ir50p_lab import home
 from ir50p_lab.course.robot.catalogue import ORDER, function_of
 from ir50p_lab.course.robot.source import Source
+from ir50p_lab.errors import LabError
 
 _LOAN = "# on loan from the course"
 _STAGE = ", stage "
@@ -29,17 +30,25 @@ def path_of(name) -> Path:
     return folder() / f"_{function_of(name)}.py"
 
 
+def read(path):
+    """Return the text of a file of a function. Raises LabError if another program has saved it in another encoding."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise LabError(f"{path} is not in UTF-8: open it in an editor and save it with the encoding UTF-8") from None
+
+
 def is_there(name):
     """Tell whether a function, or this stage of one, is in the folder, the student's or on loan."""
     if not path_of(name).exists():
         return False
-    first = path_of(name).read_text(encoding="utf-8").partition("\n")[0]
+    first = read(path_of(name)).partition("\n")[0]
     return first.partition(_STAGE)[2].split(":")[0] == (name if "." in name else "")
 
 
 def on_loan(name):
     """Tell whether a function in the folder is the course's."""
-    return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
+    return is_there(name) and read(path_of(name)).startswith(_LOAN)
 
 
 def keep(source, task, find, *, loan=""):
@@ -57,7 +66,7 @@ def keep(source, task, find, *, loan=""):
     head = f"{loan or '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
     module, test, package = path_of(source.name), folder() / f"test_{source.name}.py", folder() / "__init__.py"
     texts = {module: head + source.module, test: task.test or _small_test(task), package: _exports(source.name)}
-    before = {path: path.read_text(encoding="utf-8") for path in texts if path.is_file()}
+    before = {path: read(path) for path in texts if path.is_file()}
     try:
         for path, text in texts.items():
             _write(path, text)
@@ -73,7 +82,7 @@ def keep(source, task, find, *, loan=""):
 
 def lend(task, find):
     """Write the course's solution of a function, marked as on loan. Returns what else came along."""
-    return keep(Source(task.function, task.loan, _calls(task)), task, find, loan=_LOAN)
+    return keep(Source(task.function, task.solution_text, _calls(task)), task, find, loan=_LOAN)
 
 
 def put_aside(name):
@@ -81,7 +90,7 @@ def put_aside(name):
     path, name = path_of(name), function_of(name)
     if not path.exists():
         return
-    _lay_by(name, path.read_text(encoding="utf-8"))
+    _lay_by(name, read(path))
     path.unlink()
     (folder() / f"test_{name}.py").unlink(missing_ok=True)
     _write(folder() / "__init__.py", _exports())
@@ -107,6 +116,8 @@ def load(name):
     files = sorted(folder().glob("_*.py"))
     stamp = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
     if _import_state["stamp"] != (folder(), stamp):
+        for path in files:
+            read(path)  # Python's own error would not name the file
         for module in [one for one in sys.modules if one.partition(".")[0] == _PACKAGE]:
             del sys.modules[module]
         spec = importlib.util.spec_from_file_location(
@@ -123,7 +134,7 @@ def load(name):
 def _calls(task):
     import re
 
-    return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.loan)))
+    return tuple(sorted(one for one in task.leans_on if re.search(rf"\b{one}\(", task.solution_text)))
 
 
 def _exports(more=""):
@@ -146,7 +157,7 @@ def _small_test(task):
     return (
         f"import numpy as np\nfrom numpy import array, inf, nan\n\nfrom my_robot import {task.name}\n\n\n"
         f"def test_{task.name}():\n    found = {task.name}({arguments})\n"
-        f"    expected = {_plain(task.right(*case))}\n{compared}"
+        f"    expected = {_plain(task.reference(*case))}\n{compared}"
     )
 
 

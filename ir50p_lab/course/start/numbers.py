@@ -18,7 +18,7 @@ NUMBERS = (
         unit="rad",
         tolerance=1e-3,
         why="Inside the package every angle is in radians; degrees appear only on sliders, named `_deg`.",
-        slips={
+        mistakes={
             "These are still degrees: half a turn is 180 degrees, or pi radians.": [90, -45, 30],
             "These are turns: a full turn is 2 pi radians, not 1.": np.array([90, -45, 30]) / 360,
             "The sign of the second angle got lost: it turns the other way.": np.deg2rad([90, 45, 30]),
@@ -33,7 +33,7 @@ NUMBERS = (
         tolerance=0.02,
         because="a reading from the plot is good to a tick",
         why="T says how fast a system answers; each motor and each filter of the arm has one.",
-        slips={
+        mistakes={
             "That is the top speed; the time constant is a time, read on the other axis.": 1.74,
             "That is the speed at the dashed line; at what time is it reached?": 1.74 * (1 - np.exp(-1)),
             "That is the share of the top speed; at what time is it reached?": 1 - np.exp(-1),

@@ -7,7 +7,7 @@ from ir50p_lab.controllers import ComputedTorque
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.course.draw.traces import STAMP
-from ir50p_lab.course.robot.parts import parts
+from ir50p_lab.course.robot.arm_numbers import parts
 from ir50p_lab.course.torque.views import RobustnessView
 from ir50p_lab.identification import regressor
 from ir50p_lab.signals import quintic

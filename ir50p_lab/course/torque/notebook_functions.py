@@ -1,4 +1,4 @@
-"""Functions of 14 and 15 that stay in their notebook: the course's, what each is tried on, typical slips."""
+"""Functions of 14 and 15 that stay in their notebook: the course's, what each is tried on, typical mistakes."""
 
 import numpy as np
 
@@ -51,7 +51,7 @@ def made_up(q, qd, qdd, direction):
     return 3 * np.cos(q) + 40 * qd + 5 * qdd + 11 * direction
 
 
-# ------------------------------------------------------------------------------------------------- typical slips
+# ------------------------------------------------------------------------------------------------- typical mistakes
 def _in_torques(q):
     return gravity(load_arm(), q)
 
@@ -91,15 +91,15 @@ _BOTH = "speed and direction are still the measured ones"
 TASKS = notebook_tasks(
     __file__,
     carry=(carry, lambda: [(q,) for q in _rows(3)], "the counts, three numbers", {
-        "slips": (Mistake(_in_torques, _TORQUES),), "tolerance": 1e-3, "unit": "counts"}),
+        "mistakes": (Mistake(_in_torques, _TORQUES),), "tolerance": 1e-3, "unit": "counts"}),
     cancel=(cancel, lambda: [(x, 3 * v) for x, v in zip(_rows(2), _rows(), strict=True)], "the push, one number", {
-        "slips": (Mistake(_other_sign, _SIGNS), Mistake(_no_brake, _BRAKE))}),
+        "mistakes": (Mistake(_other_sign, _SIGNS), Mistake(_no_brake, _BRAKE))}),
     model=(model, lambda: [tuple(row) for row in _rows(3, 3)], "the torques, three numbers", {
-        "slips": (Mistake(_no_weight, _WEIGHT), Mistake(_no_speeds, _SPEEDS)), "tolerance": 1e-3, "unit": "N m"}),
+        "mistakes": (Mistake(_no_weight, _WEIGHT), Mistake(_no_speeds, _SPEEDS)), "tolerance": 1e-3, "unit": "N m"}),
     pushes=(pushes, _theta_states, "the counts, three numbers", {
-        "slips": (Mistake(_one_row, _ROW),), "unit": "counts"}),
+        "mistakes": (Mistake(_one_row, _ROW),), "unit": "counts"}),
     into=(into, lambda: [(*one[:2], one[2:]) for one in _rows(5, 3)], "place, speed and direction, three vectors", {
-        "results": ("place", "speed", "direction"), "slips": (Mistake(_measured, _BOTH),)}),
+        "results": ("place", "speed", "direction"), "mistakes": (Mistake(_measured, _BOTH),)}),
     planned=(planned, lambda: [(made_up, plan) for plan in _rows(3, 3)], "the counts, three numbers", {
         "unit": "counts"}),
 )  # fmt: skip

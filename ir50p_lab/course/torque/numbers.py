@@ -21,7 +21,7 @@ NUMBERS = (
         unit="rad",
         tolerance=5e-4,
         why="It sags: an error of the model is divided by M Kp, so that high gains hide it.",
-        slips={
+        mistakes={
             "Kp is an acceleration per rad here; the torque per rad is M Kp.": (_BELIEVED - _TRUE) / _KP,
             "The model carries its 4 N m; only what is missing must be made by the error.": -_TRUE / (_M * _KP),
             "At rest nothing moves, so Kd has no part in it.": (_BELIEVED - _TRUE) / (_M * _KD),
@@ -35,7 +35,7 @@ NUMBERS = (
         unit="rad/s",
         tolerance=5e-3,
         why="No controller passes it: what a motion needs beyond that, the forecast shows before the arm does.",
-        slips={
+        mistakes={
             "That is the speed without friction; Coulomb friction and offset take their counts first.": _FULL / _D,
             "Friction does not help: it takes counts away from the motion.": (_FULL + _FC + _TF) / _D,
             "Upside down: that is in s/rad.": _D / _FULL,

@@ -8,7 +8,7 @@ import pytest
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.at_the_bench import drive_views as views
-from ir50p_lab.course.robot.parts import parts
+from ir50p_lab.course.robot.arm_numbers import parts
 from ir50p_lab.errors import BoardLostError, InputError, LabError, PauseError, RunawayError
 from ir50p_lab.modelling import IR50P
 

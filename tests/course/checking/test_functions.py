@@ -51,24 +51,24 @@ def test_reference_solutions_pass_become_the_robot_and_stand_alone(home, capsys)
 def test_poses_and_tip_that_stand_in_are_the_packages():
     l, q = np.array(IR50P.l), np.random.default_rng(0).uniform(-1.5, 1.5, (50, 3))
     tips = modelling.forward_kinematics(IR50P, q)
-    np.testing.assert_allclose([task("forward_kinematics").right(one, l) for one in q], tips, atol=1e-12)
-    poses = [task("inverse_kinematics").right(p, l) for p in tips]
+    np.testing.assert_allclose([task("forward_kinematics").reference(one, l) for one in q], tips, atol=1e-12)
+    poses = [task("inverse_kinematics").reference(p, l) for p in tips]
     np.testing.assert_allclose(np.exp(1j * np.array(poses)), np.exp(1j * modelling.inverse_kinematics(IR50P, tips).q))
 
 
 @pytest.mark.parametrize("name", written())
 def test_the_loan_is_right_too(name):
-    names = {"np": np, **{one: task(one).right for one in written()}}
-    exec(task(name).loan, names)
+    names = {"np": np, **{one: task(one).reference for one in written()}}
+    exec(task(name).solution_text, names)
     assert grade(task(name), names[name]).state == "right"
 
 
 @pytest.mark.parametrize("name", written())
-def test_every_slip_gets_its_own_sentence(name):
+def test_every_mistake_gets_its_own_sentence(name):
     one = task(name)
-    for slip in one.slips:
-        verdict = grade(one, slip.wrong)
-        assert verdict.says == slip.says
+    for mistake in one.mistakes:
+        verdict = grade(one, mistake.function)
+        assert verdict.says == mistake.says
         assert verdict.state == "wrong"
 
 

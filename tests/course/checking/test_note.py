@@ -4,5 +4,5 @@ from ir50p_lab.course.checking.note import Note
 
 
 def test_note_in_a_notebook():
-    shown = Note("slip", "x-1", "use `R @ v`, not <v>")._repr_html_()
+    shown = Note("mistake", "x-1", "use `R @ v`, not <v>")._repr_html_()
     assert "<code>R @ v</code>" in shown and "&lt;v&gt;" in shown and shown.count("<div") == 1

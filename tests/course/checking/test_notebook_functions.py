@@ -46,17 +46,29 @@ WRONG = [
     ("circle", "    return right(t) * [[1], [-1], [1]]", ""),
     ("circle", "    return np.degrees(right(t))", ""),
     ("circle", "    return right(t % 6.5)", ""),
+    ("rule", "    return 1 / (K * (tau_c + L)), K, T", ""),
+    ("rule", "    return 1 / (tau_c - tau_c), K, T", ""),
+    ("rule", "    return np.eye(2)", ""),
+    ("motor_law", "    return v * np.maximum(0, t - L)", ""),
+    ("motor_law", "    return 0 * t", ""),
     ("once_round", "    return kp * K / (w * np.hypot(1, w * T)), 90 + np.arctan(w * T) + w * late", "radians"),
     ("once_round", "    return K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T) + w * late)", ""),
     ("once_round", "    return kp * K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T))", "left out"),
+    ("carry", "    return weight(q)", "a motor takes counts"),
+    ("cancel", "    return v - 9.81 * np.sin(x[0]) - 0.2 * x[1]", "the other way round"),
+    ("cancel", "    return v + 9.81 * x[0] + 0.2 * x[1]", ""),
+    ("model", "    return mass(q) @ qdd", ""),
+    ("pushes", "    return theta @ qd", ""),
+    ("into", "    return q, qd, np.sign(qd)", ""),
+    ("planned", "    return model(plan[0], plan[1], plan[2], plan[1])", ""),
 ]
 GIVEN = {
     "tip": lambda q, l: jacobian(frames(q, l), 3, frames(q, l)[3][:3, 3])[:3],
     "l": np.array(IR50P.l),
     "mass": lambda q: mass_matrix(IR50P, q),
-    "weight": lambda q: of_notebook("torque").right(q, np.zeros(3), np.zeros(3)),
+    "weight": lambda q: of_notebook("torque").reference(q, np.zeros(3), np.zeros(3)),
     "q_now": np.zeros(3),
-    "right": of_notebook("circle").right,
+    "right": of_notebook("circle").reference,
     "fall": lambda x: forward_dynamics(IR50P.without_friction(), x[:3], x[3:], np.zeros(3)),
 }
 
@@ -76,14 +88,14 @@ def written(name, body):
 @pytest.mark.parametrize("name", IN_NOTEBOOK)
 def test_the_courses_own_is_right_and_its_lines_are_known(capsys, name):
     task = of_notebook(name)
-    assert check(name, task.right) is task.right
+    assert check(name, task.reference) is task.reference
     assert "right, and yours" in capsys.readouterr().out
     assert solution(name).startswith(f"def {name}({', '.join(task.signature)}):")
 
 
 @pytest.mark.parametrize(("name", "body", "words"), WRONG)
 def test_a_wrong_one_is_refused(capsys, name, body, words):
-    right = of_notebook(name).right
+    right = of_notebook(name).reference
     found = check(name, written(name, body))
     assert found is right and badge_of(found) == "the course's"
     says = capsys.readouterr().out
@@ -92,13 +104,13 @@ def test_a_wrong_one_is_refused(capsys, name, body, words):
 
 @pytest.mark.parametrize("name", IN_NOTEBOOK)
 def test_each_typical_slip_has_its_sentence(capsys, name):
-    for slip in of_notebook(name).slips:
-        check(name, slip.wrong)
-        assert slip.says in capsys.readouterr().out
+    for mistake in of_notebook(name).mistakes:
+        check(name, mistake.function)
+        assert mistake.says in capsys.readouterr().out
 
 
 def test_dots_are_no_answer(capsys):
-    assert check("slide", written("slide", "    return ...")) is of_notebook("slide").right
+    assert check("slide", written("slide", "    return ...")) is of_notebook("slide").reference
     assert "not written yet" in capsys.readouterr().out
 
 

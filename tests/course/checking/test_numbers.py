@@ -14,10 +14,10 @@ from ir50p_lab.course.checking.numbers import grade_number
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import PROJECT
 
-VECTOR = Number("x-1", "", "three numbers", [1.0, 2.0, 3.5], unit="m", tolerance=1e-6, why="because", slips={})
-ANGLES = Number("x-2", "", "two angles", [0.1, 3], unit="rad", tolerance=1e-6, angle=True, why="so", slips={})
+VECTOR = Number("x-1", "", "three numbers", [1.0, 2.0, 3.5], unit="m", tolerance=1e-6, why="because", mistakes={})
+ANGLES = Number("x-2", "", "two angles", [0.1, 3], unit="rad", tolerance=1e-6, angle=True, why="so", mistakes={})
 TYPED = Number(
-    "x-3", "", "e", np.e, tolerance=1e-3, why="because", slips={"Nearly: it is not pi.": np.pi}, hint="Euler."
+    "x-3", "", "e", np.e, tolerance=1e-3, why="because", mistakes={"Nearly: it is not pi.": np.pi}, hint="Euler."
 )
 
 
@@ -84,11 +84,11 @@ def test_an_object_that_raises_is_no_error():
         (VECTOR, (..., ..., ...), "open", "not answered yet"),
         (VECTOR, [1, 2, 4], "wrong", "look again at answer[2]"),
         (VECTOR, [1.000004, 2, 3.5], "wrong", "close, but 1e-06 m"),
-        (VECTOR, [-1, -2, -3.5], "slip", "sign"),
-        (VECTOR, [1000, 2000, 3500], "slip", "millimetres"),
-        (ANGLES, np.rad2deg([0.1, 3]), "slip", "degrees"),
+        (VECTOR, [-1, -2, -3.5], "mistake", "sign"),
+        (VECTOR, [1000, 2000, 3500], "mistake", "millimetres"),
+        (ANGLES, np.rad2deg([0.1, 3]), "mistake", "degrees"),
         (TYPED, 2.72, "wrong", "close, but 0.001 is the limit (it allows for rounding)"),
-        (TYPED, 3.1416, "slip", "not yet, found 3.1416. Nearly: it is not pi."),
+        (TYPED, 3.1416, "mistake", "not yet, found 3.1416. Nearly: it is not pi."),
         (TYPED, 1, "wrong", "not yet, found 1; expected a number: e. Euler."),
     ],
 )

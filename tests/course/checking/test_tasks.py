@@ -9,7 +9,7 @@ import pytest
 from cells import cell
 
 from ir50p_lab.course import check, my_robot
-from ir50p_lab.course.checking.cell import take
+from ir50p_lab.course.checking.cell import extract
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.task import Failed, Task, text_of
 from ir50p_lab.course.robot import catalogue, student_package
@@ -33,9 +33,9 @@ def lines():
 
 FIT_LINE = Task(
     name="fit_line",
-    asks="slope, offset, covariance (2, 2) and scatter",
-    right=fit_line,
-    loan=text_of(fit_line),
+    returns="slope, offset, covariance (2, 2) and scatter",
+    reference=fit_line,
+    solution_text=text_of(fit_line),
     cases=lines,
     results=("slope", "offset", "covariance", "scatter"),
 )
@@ -67,9 +67,9 @@ def test_integrate():
 """
 INTEGRATE = Task(
     name="integrate",
-    asks="t (k + 1,) and x (k + 1, n)",
-    right=integrate,
-    loan=text_of(integrate),
+    returns="t (k + 1,) and x (k + 1, n)",
+    reference=integrate,
+    solution_text=text_of(integrate),
     cases=lambda: [(swing, np.array([1.0, 0.5]), 0.3, 0.1), (swing, np.array([0.2, 1.0]), 2.0, 0.2)],
     results=("t", "x"),
     test=TEST,
@@ -85,14 +85,14 @@ def home(tmp_path, monkeypatch):
 
 
 def says(task, old, new):
-    assert old in task.loan
-    text = task.loan.replace(old, new)
-    return grade(task, take(cell(text, task.name), task.name, ())).says
+    assert old in task.solution_text
+    text = task.solution_text.replace(old, new)
+    return grade(task, extract(cell(text, task.name), task.name, ())).says
 
 
 @pytest.mark.parametrize("task", [FIT_LINE, INTEGRATE], ids=lambda task: task.name)
 def test_a_right_answer_in_parts_of_unlike_shape_passes(task):
-    assert grade(task, task.right).state == "right"
+    assert grade(task, task.reference).state == "right"
 
 
 @pytest.mark.parametrize(
@@ -130,7 +130,7 @@ def test_each_result_is_named_in_the_example():
 
 def test_the_small_tests_of_both_are_python_and_pass(home):
     for task in (FIT_LINE, INTEGRATE):
-        student_package.keep(Source(task.name, task.loan, ()), task, find=None)
+        student_package.keep(Source(task.name, task.solution_text, ()), task, find=None)
     assert "array" in (student_package.folder() / "test_fit_line.py").read_text()
     subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "my_robot"], cwd=home, check=True)
 
@@ -146,7 +146,7 @@ def tried(function):
 
 
 def test_a_function_of_keywords_is_asked_by_a_trial_of_its_own():
-    task = Task("find", "a place", find, text_of(find), tried=tried, test="def test_find():\n    pass\n")
+    task = Task("find", "a place", find, text_of(find), trial=tried, test="def test_find():\n    pass\n")
     assert grade(task, find).state == "right"
     assert grade(task, lambda rgb, *, hue: 0).says == "it finds another place"
 

@@ -11,8 +11,8 @@ from cells import cell
 
 from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking import grade as grading
-from ir50p_lab.course.checking.calling import call, given
-from ir50p_lab.course.checking.cell import CannotTake, take
+from ir50p_lab.course.checking.calling import call, case_in_words
+from ir50p_lab.course.checking.cell import CannotTake, extract
 from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.robot.catalogue import written
 
@@ -53,7 +53,7 @@ def judged(name, text):
     """State and sentence on the text of a cell."""
     wanted = task(name)
     try:
-        found = grading.grade(wanted, take(cell(text, wanted.function), wanted.function, wanted.leans_on))
+        found = grading.grade(wanted, extract(cell(text, wanted.function), wanted.function, wanted.leans_on))
     except CannotTake as reason:
         return f"wrong: {reason}"
     return f"{found.state}: {found.says}"
@@ -63,7 +63,7 @@ def judged(name, text):
 def test_a_wrong_answer_is_told(heading, line):
     """A row of wrong_answers.txt: one change or several (;;) in a right answer, and words of what is said of it."""
     name, _, form = heading.partition(", ")
-    text = OTHER_FORM[name] if form else task(name).loan if name.startswith("PID") else solutions.source(name)
+    text = OTHER_FORM[name] if form else task(name).solution_text if name.startswith("PID") else solutions.source(name)
     changes, words = line.replace("\\n", "\n").split("  =>  ")
     for change in changes.split("  ;;  "):
         old, new = change.split("  ->  ")
@@ -100,7 +100,7 @@ def test_whatever_comes_back_is_no_error(name, value, capsys):
 def test_an_empty_list_out_of_reach_and_a_numeric_jacobian_are_right(capsys):
     assert "right, and yours" in told(capsys, "inverse_kinematics", ("return np.empty((0, 3))", "return []"))
     step = "((np.cos(1e-6) - 1) * np.cross(axis, np.cross(lever, axis)) + np.sin(1e-6) * np.cross(axis, lever)) / 1e-6"
-    text = task("jacobian").loan.replace("np.cross(axis, lever)", step)
+    text = task("jacobian").solution_text.replace("np.cross(axis, lever)", step)
     assert "right, and yours" in told(capsys, "jacobian", text=text)
 
 
@@ -108,7 +108,7 @@ def test_a_number_of_the_edge_is_a_nanometre(capsys):
     for step, inside in ((-0.5e-9, True), (0.5e-9, True), (1e-6, False)):
         l = np.array([0.285, 0.2, 0.372])
         p = np.array([0, 0, l[0]]) + (l[1] + l[2] + step) * np.array([0.6, 0, 0.8])
-        assert (len(task("inverse_kinematics").right(p, l)) > 0) == inside
+        assert (len(task("inverse_kinematics").reference(p, l)) > 0) == inside
 
 
 @pytest.mark.parametrize("difference", ["(place(q + e) - place(q - e)) / 2e-6", "(place(q + e) - place(q)) / 1e-6"])
@@ -141,7 +141,7 @@ def test_a_good_numeric_jacobian_is_right(difference, capsys):
 def test_right_ones_of_any_shape_are_kept_and_run_alone(text, capsys):
     said = told(capsys, "rot_z", text=text, notebook={"sin": 0})
     assert "right, and yours" in said
-    np.testing.assert_allclose(my_robot.rot_z(0.3), task("rot_z").right(0.3))
+    np.testing.assert_allclose(my_robot.rot_z(0.3), task("rot_z").reference(0.3))
 
 
 @pytest.mark.parametrize(
@@ -172,7 +172,7 @@ def test_after_six_tries_the_right_formula_is_ones_own_whoever_printed_it(capsys
     for k in range(6):
         told(capsys, "rot_z", text=f"def rot_z(angle):\n    return {k} * np.eye(3)")
     assert my_robot.whose("rot_z") == "on loan"
-    assert "right, and yours" in told(capsys, "rot_z", text=task("rot_z").loan)
+    assert "right, and yours" in told(capsys, "rot_z", text=task("rot_z").solution_text)
 
 
 def test_no_sentence_says_not_yet_twice(capsys):
@@ -207,7 +207,7 @@ def test_long_runs_are_shown_short_and_last(capsys):
 def test_a_question_ends_as_one_and_names_are_the_students(capsys):
     said = told(capsys, "rot_z", ("[c, -s, 0.0], [s", "[c, s, 0.0], [-s"))
     assert "?." not in said and said.rstrip().endswith("?")
-    text = task("damped_step").loan.replace("missing = p - tip", "e = tip - p").replace("missing", "e")
+    text = task("damped_step").solution_text.replace("missing = p - tip", "e = tip - p").replace("missing", "e")
     said = told(capsys, "damped_step", text=text)
     assert "wrong way round" in said and "missing" not in said
 
@@ -219,17 +219,19 @@ def test_a_waist_beyond_half_a_turn_is_told(capsys):
 
 
 def test_numbers_that_two_mistakes_share_name_both(capsys):
-    said = told(capsys, "jacobian", text=task("jacobian").loan.replace("cross(axis, lever)", "cross(lever, axis)"))
+    said = told(
+        capsys, "jacobian", text=task("jacobian").solution_text.replace("cross(axis, lever)", "cross(lever, axis)")
+    )
     assert "factors of the cross product" in said and "from the point to the joint" in said
-    said = told(capsys, "reach", text=task("reach").loan.replace("            smallest = turn\n", ""))
+    said = told(capsys, "reach", text=task("reach").solution_text.replace("            smallest = turn\n", ""))
     assert "compared" in said and "kept up to date" in said
 
 
 def test_places_to_reach_have_one_best_pose():
     for p, l, q_now, limits in task("reach").cases():
-        turns = [np.abs(q - q_now).max() for q in task("inverse_kinematics").right(p, l)
+        turns = [np.abs(q - q_now).max() for q in task("inverse_kinematics").reference(p, l)
                  if (q >= limits[0]).all() and (q <= limits[1]).all()
-                 and (task("frames").right(q, l)[2:, 2, 3] >= 0).all()]  # fmt: skip
+                 and (task("frames").reference(q, l)[2:, 2, 3] >= 0).all()]  # fmt: skip
         assert len(turns) < 2 or np.diff(np.sort(turns))[0] > 0.05
 
 
@@ -238,7 +240,7 @@ WHOLE = [[*heading.split("  =>  "), text] for heading, text in sections_of("wron
 
 @pytest.mark.parametrize(("name", "words", "text"), WHOLE, ids=range(len(WHOLE)))
 def test_a_whole_wrong_answer_is_told(name, words, text, capsys):
-    said = told(capsys, name, text=text, notebook={"my_robot": my_robot, "by_course": task("frames").right})
+    said = told(capsys, name, text=text, notebook={"my_robot": my_robot, "by_course": task("frames").reference})
     assert words in said and "gufunc" not in said, said
 
 
@@ -246,14 +248,14 @@ def test_a_whole_wrong_answer_is_told(name, words, text, capsys):
 def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypatch):
     """With the sentences for known mistakes taken away, the symptom has to speak of what is shown."""
     monkeypatch.setattr(grading, "distortions", lambda task: ())
-    known, one = task(name).slips, dataclasses.replace(task(name), slips=())
+    known, one = task(name).mistakes, dataclasses.replace(task(name), mistakes=())
     cases, shown = one.cases(), 0
     for mistake in known:
-        verdict = grading.grade(one, mistake.wrong)
-        returned = [call(one, mistake.wrong, case) for case in cases]
-        answers = {k: (case, returned[k], one.right(*case)) for k, case in enumerate(cases)}
+        verdict = grading.grade(one, mistake.function)
+        returned = [call(one, mistake.function, case) for case in cases]
+        answers = {k: (case, returned[k], one.reference(*case)) for k, case in enumerate(cases)}
         answers = {k: answer for k, answer in answers.items() if not grading._agrees(one, *answer[1:])}
-        there = [k for k, case in enumerate(cases) if verdict.example.startswith(given(one, case) + "\n")]
+        there = [k for k, case in enumerate(cases) if verdict.example.startswith(case_in_words(one, case) + "\n")]
         shown += bool(there)
         assert not there or any(k in answers for k in there)
         if there and one.symptom and not verdict.says.startswith("it stops"):

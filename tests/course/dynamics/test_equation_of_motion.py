@@ -10,7 +10,7 @@ from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.dynamics import lump_view
 from ir50p_lab.course.dynamics.functions.velocity_torque import made_up_mass
 from ir50p_lab.course.kinematics.functions.frames import frames
-from ir50p_lab.course.robot.parts import parts
+from ir50p_lab.course.robot.arm_numbers import parts
 from ir50p_lab.modelling import IR50P, Arm, coriolis_matrix, gravity, mass_matrix
 
 OTHER = Arm.load("data/arm_example.toml")
@@ -32,9 +32,9 @@ def states(count=30):
 def test_what_stands_in_is_the_courses_equation(arm):
     numbers = parts(arm)
     for q, qd in states():
-        held = task("gravity_torque").right(q, numbers.l, numbers.m, numbers.lc, numbers.g)
+        held = task("gravity_torque").reference(q, numbers.l, numbers.m, numbers.lc, numbers.g)
         np.testing.assert_allclose(held, gravity(arm, q), atol=1e-9)
-        asked = task("velocity_torque").right(q, qd, lambda q: mass_matrix(arm, q))
+        asked = task("velocity_torque").reference(q, qd, lambda q: mass_matrix(arm, q))
         np.testing.assert_allclose(asked, coriolis_matrix(arm, q, qd) @ qd, atol=1e-8)
 
 

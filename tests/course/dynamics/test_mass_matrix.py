@@ -17,7 +17,7 @@ TASK = task("mass_matrix")
 def test_it_is_that_of_the_package(arm):
     numbers = parts(arm)
     for q in np.random.default_rng(4).uniform(-2, 2, (20, 3)):
-        np.testing.assert_allclose(TASK.right(q, *numbers[:5]), mass_matrix(arm, q), atol=1e-12)
+        np.testing.assert_allclose(TASK.reference(q, *numbers[:5]), mass_matrix(arm, q), atol=1e-12)
 
 
 def test_an_arm_without_motors_has_no_rotors_and_no_gain():
@@ -27,9 +27,9 @@ def test_an_arm_without_motors_has_no_rotors_and_no_gain():
 
 def test_a_jacobian_by_differences_serves():
     def by_differences(T, link, point):
-        return task("jacobian").right(T, link, point) + 4e-6
+        return task("jacobian").reference(T, link, point) + 4e-6
 
     mine = cell(
-        solutions.source("mass_matrix"), "mass_matrix", {"frames": task("frames").right, "jacobian": by_differences}
+        solutions.source("mass_matrix"), "mass_matrix", {"frames": task("frames").reference, "jacobian": by_differences}
     )
     assert grade(TASK, mine).state == "right"

@@ -28,7 +28,7 @@ def home(tmp_path, monkeypatch):
 
 def edited(stage, *edits):
     """The course's solution of a stage with some lines changed."""
-    text = task(stage).loan
+    text = task(stage).solution_text
     for old, new in edits:
         assert old in text
         text = text.replace(old, new)
@@ -111,7 +111,7 @@ def test_what_stands_in_is_at_the_same_stage(capsys):
     target = np.array([0.0, 0.8, 0.0])
     check("PID.p")
     short = simulate(IR50P, my_robot.PID(kp=400), target, duration=3)
-    mine = simulate(IR50P, made(task("PID.p").loan)(kp=400), target, duration=3)
+    mine = simulate(IR50P, made(task("PID.p").solution_text)(kp=400), target, duration=3)
     np.testing.assert_allclose(short.q, mine.q, atol=1e-9)
     check("PID.pi")
     far = np.array([0.0, 4.0, 0.0])

@@ -6,7 +6,7 @@ import solutions
 from cells import cell
 
 from ir50p_lab.course import my_robot
-from ir50p_lab.course.checking.cell import take
+from ir50p_lab.course.checking.cell import extract
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.live_arm.badge import badge_of
@@ -23,7 +23,7 @@ def told(name, *changes, text=None):
         assert old in text, old
         text = text.replace(old, new)
     wanted = task(name)
-    found = grade(wanted, take(cell(text, name), wanted.function, wanted.leans_on))
+    found = grade(wanted, extract(cell(text, name), wanted.function, wanted.leans_on))
     return f"{found.state}: {found.says}"
 
 

@@ -6,7 +6,7 @@ import solutions
 
 from ir50p_lab import modelling
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.robot.parts import parts
+from ir50p_lab.course.robot.arm_numbers import parts
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 

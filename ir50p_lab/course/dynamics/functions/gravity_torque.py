@@ -31,4 +31,4 @@ def _poses():
 
 _EARLIER = ("jacobian", "forward_kinematics", "frames", "dh_matrix", "rot_z")
 _PARTS = ("torque 1", "torque 2", "torque 3")
-TASK = task_of(gravity_torque, cases=_poses, leans_on=_EARLIER, tolerance=1e-6, parts=_PARTS, unit="N m")
+TASK = task_of(gravity_torque, cases=_poses, leans_on=_EARLIER, tolerance=1e-6, entry_names=_PARTS, unit="N m")

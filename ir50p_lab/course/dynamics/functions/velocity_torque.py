@@ -49,4 +49,4 @@ def _symptom(case, returned, expected):
 
 
 _PARTS = ("torque 1", "torque 2", "torque 3")
-TASK = task_of(velocity_torque, cases=_motions, tolerance=1e-4, parts=_PARTS, symptom=_symptom, unit="N m")
+TASK = task_of(velocity_torque, cases=_motions, tolerance=1e-4, entry_names=_PARTS, symptom=_symptom, unit="N m")

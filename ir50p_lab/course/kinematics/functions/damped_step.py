@@ -55,6 +55,6 @@ TASK = task_of(
     cases=_steps,
     leans_on=("jacobian", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
     tolerance=1e-5,  # a Jacobian by differences over 1e-6 rad leaves 2e-6
-    parts=("q1", "q2", "q3"),
+    entry_names=("q1", "q2", "q3"),
     symptom=_symptom,
 )

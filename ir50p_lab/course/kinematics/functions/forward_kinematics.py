@@ -16,5 +16,5 @@ TASK = task_of(
     forward_kinematics,
     cases=lambda: some_arms(8, 5),
     leans_on=("frames", "dh_matrix", "rot_z"),
-    parts=("x", "y", "z"),
+    entry_names=("x", "y", "z"),
 )

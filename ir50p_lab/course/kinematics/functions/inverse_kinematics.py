@@ -131,9 +131,9 @@ TASK = task_of(
     inverse_kinematics,
     cases=_targets,
     leans_on=("forward_kinematics", "frames", "dh_matrix", "rot_z"),
-    same=same_poses,
-    parts=("q1", "q2", "q3"),
-    slips=tuple(_mistakes()),
+    compare=same_poses,
+    entry_names=("q1", "q2", "q3"),
+    mistakes=tuple(_mistakes()),
     symptom=_symptom,
-    form=_whole_turns,
+    check_form=_whole_turns,
 )

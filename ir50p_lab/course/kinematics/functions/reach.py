@@ -110,7 +110,7 @@ TASK = task_of(
     reach,
     cases=_cases,
     leans_on=("inverse_kinematics", "forward_kinematics", "frames", "dh_matrix", "rot_z"),
-    same=_same_pose,
-    parts=("q1", "q2", "q3"),
+    compare=_same_pose,
+    entry_names=("q1", "q2", "q3"),
     symptom=_symptom,
 )

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from ir50p_lab import controllers
-from ir50p_lab.course.checking.task import Task, changed, words
+from ir50p_lab.course.checking.task import Task, apply_changes, words
 from ir50p_lab.course.loops.functions.PID_trials import LOANS, tried
 
 
@@ -17,9 +17,9 @@ class PID(controllers.PID):
 
 
 def _task(stage):
-    right = PID if stage == "PID" else changed(LOANS[stage], (), {"np": np})["PID"]
+    right = PID if stage == "PID" else apply_changes(LOANS[stage], (), {"np": np})["PID"]
     options = words(stage, __file__) | {"test": words("PID", __file__)["test"]}
-    return Task(name=stage, right=right, loan=LOANS[stage], tried=partial(tried, stage), **options)
+    return Task(name=stage, reference=right, solution_text=LOANS[stage], trial=partial(tried, stage), **options)
 
 
 STAGES = {stage: _task(stage) for stage in LOANS}

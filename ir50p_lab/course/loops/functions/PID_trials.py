@@ -9,9 +9,9 @@ from functools import cache
 
 import numpy as np
 
-from ir50p_lab.course.checking.calling import guarded
+from ir50p_lab.course.checking.calling import call_or_fail
 from ir50p_lab.course.checking.shape_checks import no_numbers
-from ir50p_lab.course.checking.task import Failed, changed, changes_of, sections, sentences, shown
+from ir50p_lab.course.checking.task import Failed, apply_changes, changes_of, sections, sentences, short_text
 
 LOANS = {stage: sections(stage, __file__)["solution"] for stage in ("PID.p", "PID.pi", "PID.limits", "PID")}
 _SAYS = sentences("PID", __file__)
@@ -47,7 +47,7 @@ def _make(cls, **settings):
     except TypeError:
         names = ", ".join(inspect.signature(cls).parameters)
         raise _failed("made with", ", ".join(settings), names) from None
-    return guarded(lambda: cls(**settings), lambda: f"PID({settings})")
+    return call_or_fail(lambda: cls(**settings), lambda: f"PID({settings})")
 
 
 def _run(pid, q, wanted=0.0, speed=0.0):
@@ -65,10 +65,10 @@ def _run(pid, q, wanted=0.0, speed=0.0):
 
 def _one_step(pid, t, q, reference):
     def what():
-        return f"step({t:.2f}, {shown(q)}, reference), reference = {shown(reference)}"
+        return f"step({t:.2f}, {short_text(q)}, reference), reference = {short_text(reference)}"
 
     given = q.copy(), reference.copy()
-    command = guarded(lambda: pid.step(t, *given), what)
+    command = call_or_fail(lambda: pid.step(t, *given), what)
     for name, now, before in zip(("q", "the reference"), given, (q, reference), strict=True):
         if not np.array_equal(now, before):
             raise Failed(_SAYS["changes"].format(name), what())
@@ -91,7 +91,7 @@ def _constant(seconds, value):
 def _made(stage, heading):
     """Pairs (class, sentence): what the table under a heading of PID.STAGE.txt makes of the solution of that stage."""
     rows = changes_of(sections(stage, __file__).get(heading, ""))
-    return [(changed(LOANS[stage], changes, {"np": np})["PID"], says) for says, changes in rows]
+    return [(apply_changes(LOANS[stage], changes, {"np": np})["PID"], says) for says, changes in rows]
 
 
 def compared(stage, commands, otherwise, heading="mistakes"):
@@ -99,19 +99,19 @@ def compared(stage, commands, otherwise, heading="mistakes"):
 
     def probe(cls):
         u = commands(cls)
-        rights = [(changed(LOANS[stage], (), {"np": np})["PID"], ""), *_made(stage, "also right")]
+        rights = [(apply_changes(LOANS[stage], (), {"np": np})["PID"], ""), *_made(stage, "also right")]
         for right, remark in rights:
             if np.allclose(u, commands(right), atol=1e-6, rtol=1e-9):
                 return remark
         expected = commands(rights[0][0])
         good = np.isclose(u, expected, atol=1e-6, rtol=1e-9)
         k = np.flatnonzero(~good.all(axis=1))[0]
-        example = f"sample {k} of a run, counts\nexpected: {shown(expected[k])}\nyours: {shown(u[k])}"
+        example = f"sample {k} of a run, counts\nexpected: {short_text(expected[k])}\nyours: {short_text(u[k])}"
         for wrong, says in _made(stage, heading):
             if np.allclose(u, commands(wrong), atol=1e-6, rtol=1e-6):
                 raise Failed(says, example)
         joints = " and ".join(str(joint + 1) for joint in np.flatnonzero(good.all(axis=0)))
-        says = otherwise(cls, u, expected) if callable(otherwise) else _SAYS[otherwise].format(shown(u[k]))
+        says = otherwise(cls, u, expected) if callable(otherwise) else _SAYS[otherwise].format(short_text(u[k]))
         raise Failed(f"{says}; joint {joints} is right" if joints else says, example)
 
     return probe
@@ -128,7 +128,7 @@ def _push_symptom(cls, u, expected):
     if np.allclose(u, _on_the_move(kp=100)(cls)):
         return _SAYS["kp does nothing"]
     if np.allclose(u - expected, more := (u - expected)[0]):
-        return _SAYS["push at the target"].format(shown(more))
+        return _SAYS["push at the target"].format(short_text(more))
     return _SAYS["push"]
 
 
@@ -164,7 +164,7 @@ def again(forgotten, **settings):
         if not callable(getattr(pid, "reset", None)):
             raise _failed("no reset")
         first = _run(pid, *_motion())
-        guarded(pid.reset)
+        call_or_fail(pid.reset)
         _alike(_run(pid, *_motion()), first, "reset", forgotten)
 
     return probe
@@ -232,7 +232,7 @@ def _gain_of_d(cls):
 def _order(cls):
     settings = {"kp": 10.0, "ki": 20.0, "kd": 30.0, "limit_pwm": 40.0, "period": 0.05, "filter_hz": 6.0}
     own = ", ".join(inspect.signature(cls).parameters)
-    by_place = _run(guarded(lambda: cls(*settings.values())), *_motion())
+    by_place = _run(call_or_fail(lambda: cls(*settings.values())), *_motion())
     _alike(by_place, _run(_make(cls, **settings), *_motion()), "order", own, ", ".join(settings))
 
 

@@ -93,7 +93,7 @@ TASK = task_of(
     cases=_cases,
     results=_NAMES,
     tolerance=(1e-3, 1e-5, 0.0105, 3e-4),  # s, rad; with or without the sample on the edge of the last second
-    rights=(_between_samples,),
+    also_right=(_between_samples,),
     unit="(s, rad, s, rad)",
     symptom=_symptom,
 )

@@ -35,4 +35,6 @@ def _symptom(case, returned, expected):
     return _SAYS["slow"] if slow_alone and (off[case[0] == 0] < 1e-9).all() else ""
 
 
-TASK = task_of(friction_torque, cases=_speeds, parts=("joint 1", "joint 2", "joint 3"), unit="N m", symptom=_symptom)
+TASK = task_of(
+    friction_torque, cases=_speeds, entry_names=("joint 1", "joint 2", "joint 3"), unit="N m", symptom=_symptom
+)

@@ -31,4 +31,4 @@ def _symptom(case, returned, expected):
     return _SAYS["push"] if off[speed == 0].any() else _SAYS["brake"] if off[counts == 0].any() else ""
 
 
-TASK = task_of(motor_torque, cases=_drives, parts=("joint 1", "joint 2", "joint 3"), unit="N m", symptom=_symptom)
+TASK = task_of(motor_torque, cases=_drives, entry_names=("joint 1", "joint 2", "joint 3"), unit="N m", symptom=_symptom)

@@ -40,4 +40,4 @@ def _motions():
     ]
 
 
-TASK = task_of(computed_torque, cases=_motions, unit="of the model", parts=("joint 1", "joint 2", "joint 3"))
+TASK = task_of(computed_torque, cases=_motions, unit="of the model", entry_names=("joint 1", "joint 2", "joint 3"))
