@@ -54,6 +54,13 @@ WRONG = [
     ("once_round", "    return kp * K / (w * np.hypot(1, w * T)), 90 + np.arctan(w * T) + w * late", "radians"),
     ("once_round", "    return K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T) + w * late)", ""),
     ("once_round", "    return kp * K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T))", "left out"),
+    ("carry", "    return weight(q)", "a motor takes counts"),
+    ("cancel", "    return v - 9.81 * np.sin(x[0]) - 0.2 * x[1]", "the other way round"),
+    ("cancel", "    return v + 9.81 * x[0] + 0.2 * x[1]", ""),
+    ("model", "    return mass(q) @ qdd", ""),
+    ("pushes", "    return theta @ qd", ""),
+    ("into", "    return q, qd, np.sign(qd)", ""),
+    ("planned", "    return model(plan[0], plan[1], plan[2], plan[1])", ""),
 ]
 GIVEN = {
     "tip": lambda q, l: jacobian(frames(q, l), 3, frames(q, l)[3][:3, 3])[:3],
