@@ -38,11 +38,16 @@ def table():
     """The table as Markdown."""
     with (Path(__file__).with_name("predictions.csv")).open(encoding="utf-8", newline="") as file:
         known = {row["name"]: row for row in csv.DictReader(file)}
-    lines = ["| | name | asked | truth | usual wrong guesses | the sentence one hopes for |", "|---|---|---|---|---|---|"]
+    lines = [
+        "| | name | asked | truth | usual wrong guesses | the sentence one hopes for |",
+        "|---|---|---|---|---|---|",
+    ]
     for number, name, unit, question in asked():
         row = known.pop(name)
         question = row["asked"] or question
-        lines.append(f"| {number} | `{name}` | {question} | {row['truth']} {unit} | {row['wrong']} | {row['sentence']} |")
+        lines.append(
+            f"| {number} | `{name}` | {question} | {row['truth']} {unit} | {row['wrong']} | {row['sentence']} |"
+        )
     assert not known, f"no notebook asks for {list(known)}"
     return "\n".join(lines) + "\n"
 
