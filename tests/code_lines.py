@@ -17,7 +17,7 @@ NOT_OURS = {"node_modules", "__pycache__"}
 ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {
-    "modelling": 1290,
+    "modelling": 1291,
     "signals": 380,
     "controllers": 318,
     "simulation": 460,

@@ -30,6 +30,12 @@ def _circle(t, *, growth=1.0, pace=1.0, turn=1.0, at=None):
     return np.array([q, np.linalg.solve(J, RADIUS * v), np.zeros(3)])
 
 
+def motor_law(t, v, T, L):
+    """Way after the times t since a push, rad: speed v in the end, time constant T, dead time L."""
+    on = np.maximum(0, t - L)
+    return v * (on - T * (1 - np.exp(-on / T)))
+
+
 def once_round(kp, w, K, T, late):
     """Size, and degrees of lateness, of a sine of w rad/s after one turn round the loop."""
     return kp * K / (w * np.hypot(1, w * T)), 90 + np.degrees(np.arctan(w * T) + w * late)
@@ -38,6 +44,11 @@ def once_round(kp, w, K, T, late):
 # ------------------------------------------------------------------------------------------------------ tried on
 def _times():
     return [(t,) for t in (0.7, 2.0, 3.25, 5.1, -1.0, 0.0, LAP, LAP + 1)]
+
+
+def _pushes():
+    times = np.linspace(-0.1, 0.5, 7)
+    return [(times, v, T, L) for v, T, L in ((1.0, 0.1, 0.02), (-0.7, 0.2, 0.03), (2.0, 0.05, 0.0))]
 
 
 def _loops():
@@ -62,6 +73,14 @@ def _old_jacobian(t):
     return _circle(t, at="first")
 
 
+def _before(t, v, T, L):
+    return v * (t - L - T * (1 - np.exp(-(t - L) / T)))
+
+
+def _speed(t, v, T, L):
+    return v * (1 - np.exp(-np.maximum(0, t - L) / T))
+
+
 def _radians(kp, w, K, T, late):
     return once_round(kp, w, K, T, late)[0], 90 + np.arctan(w * T) + w * late
 
@@ -79,6 +98,8 @@ _CLOCK = "the speeds in it do not know how fast the angle round the circle grows
 _METRES = "the tip would have to go a metre for each radian of the circle: how large is it?"
 _ACROSS = "its speeds do not point along the circle: what is the slope of the place?"
 _ELSEWHERE = "the Jacobian in it belongs to another pose than the one that it returns"
+_BEFORE = "before the dead time is over nothing moves: what does it give for a t below L?"
+_SPEED = "that is the speed: the way is its sum"
 _DEGREES = "arctan gives radians, and so does w times a lateness"
 _SUM = "from speed to angle the motor's sine is summed up: that has a size and 90 degrees of its own"
 _LATE = "the lateness is left out: w times late, in degrees"
@@ -88,6 +109,7 @@ TASKS = notebook_tasks(
     circle=(circle, _times, "three rows: angles, speeds, zeros", {
         "mistakes": (Mistake(_no_rate, _CLOCK), Mistake(_no_radius, _METRES), Mistake(_other_sense, _ACROSS),
                   Mistake(_old_jacobian, _ELSEWHERE)), "tolerance": 1e-6}),
+    motor_law=(motor_law, _pushes, "a way for each t", {"slips": (Mistake(_before, _BEFORE), Mistake(_speed, _SPEED))}),
     once_round=(once_round, _loops, "size and degrees, two numbers", {
         "results": ("size", "degrees"),
         "mistakes": (Mistake(_radians, _DEGREES), Mistake(_no_sum, _SUM), Mistake(_prompt, _LATE))}),

@@ -24,6 +24,9 @@ def take_over(folder):
     left = [str(path) for path in files if not _copied(path, found[path])]
     print(f"Taken over from {older}: {len(files) - len(left)} files, into {home()}")
     print(f"The older notebooks are beside the new ones, in {home() / 'old'}")
+    foreign = [str(path) for path in files if path.suffix == ".py" and "\ufffd" in path.read_text("utf-8", "replace")]
+    if foreign:
+        print(f"Save with the encoding UTF-8, or Python cannot read them: {', '.join(foreign)}")
     print(f"Left where they are, because they cannot be read or are different here: {', '.join(left) or 'none'}")
 
 

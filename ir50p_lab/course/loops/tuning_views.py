@@ -4,13 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from ir50p_lab.controllers import simc_integrating
 from ir50p_lab.course import my_robot
-from ir50p_lab.course.checking.calling import Failed, array_like
 from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.course.draw.widgets import live, slider
-from ir50p_lab.identification import FOPDT
 
 _RUNS = ({"color": COLOURS["blue"]}, {"color": COLOURS["orange"], "linewidth": 1.2}, {"color": COLOURS["green"]})
 
@@ -68,26 +65,6 @@ def tuning_panel(run_of, *, joint, **gains):
 def ruler():
     """The four figures of a step, drawn on a made-up one: SVG."""
     return drawing("ruler")
-
-
-def rule_in_use(rule):
-    """The student's rule(K, T, L, tau_c), or the course's while that is unwritten; says which, and how they compare."""
-
-    def course(K, T, L, tau_c):
-        gains = simc_integrating(FOPDT(K=K, T=T, L=L), tau_c=tau_c)
-        return gains.kp, gains.ki, gains.kd
-
-    example = {"K": 0.01, "T": 0.2, "L": 0.03, "tau_c": 0.1}
-    try:
-        mine = array_like(np.zeros(3), rule, **example)
-    except Failed as failed:
-        dots = "ellipsis" in failed.args[0]
-        print("rule: the course's, until yours is written" if dots else f"rule: the course's; {failed.args[0]}")
-        return course
-    theirs = np.round(course(**example), 2)
-    same = np.allclose(mine, course(**example))
-    print("rule: yours, and right" if same else f"rule: the course's; for {example} yours gives {mine}, not {theirs}")
-    return rule if same else course
 
 
 def speed_step(t, speed, fitted=None):

@@ -149,7 +149,7 @@ def _listings():
     shown = []
     for name in ORDER:
         if student_package.is_there(name):
-            text = student_package.path_of(name).read_text(encoding="utf-8")
+            text = student_package.read(student_package.path_of(name))
             shown.append(f"<h3>{_text(name)} ({_whose(name)})</h3><pre>{_text(text)}</pre>")
     return "".join(shown)
 

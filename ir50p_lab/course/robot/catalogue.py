@@ -32,7 +32,8 @@ IN_NOTEBOOK = {  # functions that stay in their notebook, and the room in which 
     **dict.fromkeys(("along", "pace", "push"), "kinematics"),
     **dict.fromkeys(("centres", "heaviness", "shoulder_holds", "lump_torque", "torque", "acceleration"), "dynamics"),
     **dict.fromkeys(("falling", "halve", "slide", "motor_factors", "counts_for"), "motion"),
-    **dict.fromkeys(("circle", "once_round"), "at_the_bench"),
+    "rule": "loops",
+    **dict.fromkeys(("circle", "motor_law", "once_round"), "at_the_bench"),
     **dict.fromkeys(("carry", "cancel", "model", "pushes", "into", "planned"), "torque"),
 }
 _at = {}  # stage of each function that this session works on

@@ -11,6 +11,7 @@ import numpy as np
 from ir50p_lab import home
 from ir50p_lab.course.robot.catalogue import ORDER, function_of
 from ir50p_lab.course.robot.source import Source
+from ir50p_lab.errors import LabError
 
 _LOAN = "# on loan from the course"
 _STAGE = ", stage "
@@ -29,17 +30,25 @@ def path_of(name) -> Path:
     return folder() / f"_{function_of(name)}.py"
 
 
+def read(path):
+    """Return the text of a file of a function. Raises LabError if another program has saved it in another encoding."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise LabError(f"{path} is not in UTF-8: open it in an editor and save it with the encoding UTF-8") from None
+
+
 def is_there(name):
     """Tell whether a function, or this stage of one, is in the folder, the student's or on loan."""
     if not path_of(name).exists():
         return False
-    first = path_of(name).read_text(encoding="utf-8").partition("\n")[0]
+    first = read(path_of(name)).partition("\n")[0]
     return first.partition(_STAGE)[2].split(":")[0] == (name if "." in name else "")
 
 
 def on_loan(name):
     """Tell whether a function in the folder is the course's."""
-    return is_there(name) and path_of(name).read_text(encoding="utf-8").startswith(_LOAN)
+    return is_there(name) and read(path_of(name)).startswith(_LOAN)
 
 
 def keep(source, task, find, *, loan=""):
@@ -57,7 +66,7 @@ def keep(source, task, find, *, loan=""):
     head = f"{loan or '# yours'}{stage}: the next you write takes its place\n" if loan or stage else ""
     module, test, package = path_of(source.name), folder() / f"test_{source.name}.py", folder() / "__init__.py"
     texts = {module: head + source.module, test: task.test or _small_test(task), package: _exports(source.name)}
-    before = {path: path.read_text(encoding="utf-8") for path in texts if path.is_file()}
+    before = {path: read(path) for path in texts if path.is_file()}
     try:
         for path, text in texts.items():
             _write(path, text)
@@ -81,7 +90,7 @@ def put_aside(name):
     path, name = path_of(name), function_of(name)
     if not path.exists():
         return
-    _lay_by(name, path.read_text(encoding="utf-8"))
+    _lay_by(name, read(path))
     path.unlink()
     (folder() / f"test_{name}.py").unlink(missing_ok=True)
     _write(folder() / "__init__.py", _exports())
@@ -107,6 +116,8 @@ def load(name):
     files = sorted(folder().glob("_*.py"))
     stamp = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
     if _import_state["stamp"] != (folder(), stamp):
+        for path in files:
+            read(path)  # Python's own error would not name the file
         for module in [one for one in sys.modules if one.partition(".")[0] == _PACKAGE]:
             del sys.modules[module]
         spec = importlib.util.spec_from_file_location(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.loops.tuning_views import LocusView, one_joint, rule_in_use
+from ir50p_lab.course.loops.tuning_views import LocusView, one_joint
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
@@ -41,29 +41,3 @@ def test_one_joint_shows_each_run_and_the_target_of_the_first(run):
     np.testing.assert_array_equal(first, run.q[:, 1])
     np.testing.assert_array_equal(second, flat.q[:, 1])
     np.testing.assert_array_equal(figure.axes[1].lines[1].get_ydata(), flat.u[:, 1])
-
-
-def test_a_rule_that_is_right_is_used_and_any_other_is_not(capsys):
-    def rule(K, T, L, tau_c, factor=4):
-        gain, Ti = 1 / (K * (tau_c + L)), factor * (tau_c + L)
-        return gain * (1 + T / Ti), gain / Ti, gain * T
-
-    def unwritten(K, T, L, tau_c):
-        gain, Ti = ..., ...
-        return gain * (1 + T / Ti), gain / Ti, gain * T
-
-    def stops(K, T, L, tau_c):
-        return 1 / (tau_c - 0.1), K, T
-
-    others = {
-        unwritten: "until yours is written",
-        stops: "ZeroDivisionError",
-        lambda **o: rule(**o, factor=5): "yours gives",
-        lambda **o: "text": "cannot be read as an array",
-        lambda **o: None: "returns nothing",
-        lambda **o: np.eye(2): "shape (2, 2)",
-    }
-    assert rule_in_use(rule) is rule and "yours, and right" in capsys.readouterr().out
-    for other, words in others.items():
-        assert rule_in_use(other)(0.01, 0.2, 0.03, 0.1) == pytest.approx(rule(0.01, 0.2, 0.03, 0.1))
-        assert words in capsys.readouterr().out
