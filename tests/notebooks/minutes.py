@@ -16,7 +16,7 @@ from notebook_runner import FOLDER, REWRITTEN, ROOT
 from ir50p_lab.course.checking.tasks import of_notebook, task
 from ir50p_lab.course.robot.catalogue import function_of, is_function, stays
 
-README = ROOT / "README.md"
+README, INSTRUCTOR = ROOT / "README.md", ROOT / "docs" / "instructor.md"
 PANEL = re.compile(r"^(?:\w+\.)?(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
 
 
@@ -92,6 +92,25 @@ def filled(text):
     return text
 
 
+def planned(text):
+    """The text of docs/instructor.md with its hours and minutes as counted."""
+    paths = rewritten()[:12]
+    cores = [core(path) for path in paths]
+    numbers = {
+        r"(00 to 11 are )\d+( hours)": round(sum(map(minutes, paths)) / 60),
+        r"(their core )\d+(; it)": round(sum(cores) / 60),
+        r"(its core, )\d+( minutes)": cores[0],
+        r"(on the first \()\d+( minutes)": sum(cores[:3]),
+        r"(on the second \()\d+(\))": sum(cores[8:10]),
+        r"(week \()\d+( to \d+ minutes of core)": min(cores[3:8]),
+        r"(week \(\d+ to )\d+( minutes of core)": max(cores[3:8]),
+    }
+    for place, number in numbers.items():
+        text, found = re.subn(place, rf"\g<1>{number}\2", text)
+        assert found == 1, place
+    return text
+
+
 def opening(path):
     """The text of a notebook's file with its minutes as counted."""
     text = path.read_text(encoding="utf-8")
@@ -108,3 +127,4 @@ if __name__ == "__main__":
         print(f"{one.stem}: {_said(one)} min")
         one.write_text(opening(one), encoding="utf-8", newline="\n")
     README.write_text(filled(README.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
+    INSTRUCTOR.write_text(planned(INSTRUCTOR.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
