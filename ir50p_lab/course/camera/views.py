@@ -4,6 +4,7 @@ import numpy as np
 
 from ir50p_lab.course.draw.pictures import STAMP, show_picture
 from ir50p_lab.course.draw.style import COLOURS, new_figure, subplots
+from ir50p_lab.vision import Checkerboard
 
 
 def bare_picture(ax, image, title=""):
