@@ -39,8 +39,6 @@ def run(board, seconds=0.5, pwm=(20, -10, 5), **options):
 
 
 def failing_port(monkeypatch, error, platform):
-    import serial
-
     def fail(*args, **options):
         raise error
 
@@ -64,8 +62,6 @@ def failing_port(monkeypatch, error, platform):
     ],
 )
 def test_port_that_does_not_open(monkeypatch, platform, number, text, expected):
-    import serial
-
     arguments = (text,) if number is None else (number, text)
     failing_port(monkeypatch, serial.SerialException(*arguments), platform)
     with pytest.raises(PortError, match="PORT") as error:
@@ -351,10 +347,24 @@ def loses(board, happen, at=30, seconds=1.0):
     return str(caught.value), board.t - when, bench
 
 
-def test_cable_pulled(board):
-    text, after, bench = loses(board, lambda: setattr(board, "unplugged", True))
-    assert "is gone" in text and "brakes by itself" in text and "USB cable" in text
-    assert after < 0.02
+RESTARTED = "has restarted in the middle of the run"
+
+
+@pytest.mark.parametrize(
+    ("happen", "within", "expected"),
+    [
+        (lambda board: setattr(board, "unplugged", True), 0.02, ("is gone", "brakes by itself", "USB cable")),
+        (lambda board: setattr(board, "dead", True), 0.7, ("has not answered for 0.5 s",)),
+        (lambda board: board.restart(), 0.02, (RESTARTED, "supply broke down")),
+        (lambda board: board.restart(hung=True), 0.02, (RESTARTED, "hardware watchdog")),
+    ],
+    ids=["cable pulled", "silent", "supply", "hung"],
+)
+def test_a_lost_board_is_told_in_time_and_brakes(board, happen, within, expected):
+    text, after, bench = loses(board, lambda: happen(board))
+    for part in expected:
+        assert part in text
+    assert after < within
     assert len(bench.recording.t) == 31  # everything up to the fault is there
     board._advance(board.t + 0.15)
     assert (board.pwm == 0).all()
@@ -422,20 +432,6 @@ def test_termios_error_of_a_pulled_cable_is_no_stranger(board, monkeypatch):
 
     text, _, _ = loses(board, lambda: monkeypatch.setattr(board, "read", pulled))
     assert "is gone" in text
-
-
-def test_board_falls_silent(board):
-    text, after, _ = loses(board, lambda: setattr(board, "dead", True))
-    assert "has not answered for 0.5 s" in text
-    assert after < 0.7
-
-
-@pytest.mark.parametrize(("hung", "cause"), [(False, "supply broke down"), (True, "hardware watchdog")])
-def test_board_restarts_in_the_run(board, hung, cause):
-    text, after, _ = loses(board, lambda: board.restart(hung=hung))
-    assert "has restarted in the middle of the run" in text and cause in text
-    assert after < 0.02
-    assert (board.pwm == 0).all()
 
 
 def test_board_that_restarted_between_two_runs_runs_again(board):

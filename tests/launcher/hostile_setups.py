@@ -16,11 +16,25 @@ IMPORT_BOTH = "import pebble, ir50p_lab; print(ir50p_lab.__file__)"
 NOTHING_SET = {"PIP_NO_INDEX": None, "PIP_FIND_LINKS": None, "PIP_RETRIES": "0", "PIP_DEFAULT_TIMEOUT": "5"}
 
 
-def test_pip_does_the_work_where_a_setting_has_no_counterpart(project):
-    done = project.run("setup", variables={"PIP_EXISTS_ACTION": "i"})
+@pytest.fixture
+def without_uv(project, tmp_path):
+    """A folder of wheels in which no uv fits this machine."""
+    folder = tmp_path / "wheels"
+    shutil.copytree(project.wheels, folder)
+    (wheel,) = folder.glob("uv-*.whl")
+    wheel.rename(str(wheel).replace("linux", "other"))
+    return str(folder)
+
+
+@pytest.mark.parametrize("setting", ["PIP_EXISTS_ACTION", "PIP_FIND_LINKS"])
+def test_pip_does_the_work_where_uv_cannot(project, without_uv, setting):
+    """A setting that uv has no counterpart of, or no uv."""
+    value = {"PIP_EXISTS_ACTION": "i", "PIP_FIND_LINKS": without_uv}[setting]
+    done = project.run("setup", variables={setting: value})
     assert done.returncode == 0, done.stderr
     assert "-m', 'uv'" not in project.log()
     assert project.python(IMPORT_BOTH).returncode == 0
+    assert project.run("doctor", variables={"IR50P_ARM": None}).returncode == 0
 
 
 @pytest.mark.parametrize(("version", "code"), [("1.0", 0), ("2.0", 1)])
@@ -29,18 +43,6 @@ def test_uv_keeps_to_a_constraint_of_pip(project, version, code):
     done = project.run("setup", variables={"PIP_CONSTRAINT": "constraints.txt"})
     assert done.returncode == code, done.stderr
     assert "-m', 'uv'" in project.log()
-
-
-def test_pip_does_the_work_where_no_uv_fits(project, tmp_path):
-    folder = tmp_path / "wheels"
-    shutil.copytree(project.wheels, folder)
-    (wheel,) = folder.glob("uv-*.whl")
-    wheel.rename(str(wheel).replace("linux", "other"))
-    done = project.run("setup", variables={"PIP_FIND_LINKS": str(folder)})
-    assert done.returncode == 0, done.stderr
-    assert "-m', 'uv'" not in project.log()
-    assert project.python(IMPORT_BOTH).returncode == 0
-    assert project.run("doctor", variables={"IR50P_ARM": None}).returncode == 0
 
 
 def test_changed_lock_file_rebuilds(project):
@@ -107,28 +109,23 @@ def silent_index():
 
 
 @pytest.mark.skipif(os.name == "nt", reason="process groups and signals of POSIX")
-def test_ctrl_c_in_the_middle(project, silent_index):
+@pytest.mark.parametrize("by", ["Ctrl-C", "termination"])
+def test_stopped_in_the_middle(project, silent_index, by):
     process = project.start("setup", variables=silent_index.variables)
     assert silent_index.asked.wait(300)
-    os.killpg(process.pid, signal.SIGINT)  # the launcher and pip, as a terminal does
-    _, errors = process.communicate(timeout=300)
-    assert process.returncode == 130
-    assert errors.strip().startswith("Stopped.")
-    assert len(errors.strip().splitlines()) == 1
-    repaired = project.run("setup")
-    assert "half made" in repaired.stdout
-    assert project.python(IMPORT_BOTH).returncode == 0
-
-
-@pytest.mark.skipif(os.name == "nt", reason="process groups and signals of POSIX")
-def test_termination_takes_pip_along(project, silent_index):
-    process = project.start("setup", variables=silent_index.variables)
-    assert silent_index.asked.wait(300)
-    process.terminate()  # the launcher alone; reading to the end of its pipes shows that nothing else holds them
+    if by == "Ctrl-C":
+        os.killpg(process.pid, signal.SIGINT)  # the launcher and pip, as a terminal does
+    else:
+        process.terminate()  # the launcher alone; reading to the end of its pipes shows that nothing else holds them
     _, errors = process.communicate(timeout=300)
     assert process.returncode == 130
     assert "Traceback" not in errors
-    assert project.run("setup").returncode == 0
+    if by == "Ctrl-C":
+        (line,) = errors.strip().splitlines()
+        assert line.startswith("Stopped.")
+    repaired = project.run("setup")
+    assert "half made" in repaired.stdout
+    assert project.python(IMPORT_BOTH).returncode == 0
 
 
 @pytest.mark.skipif(os.name == "nt", reason="process groups and signals of POSIX")

@@ -53,8 +53,12 @@ class MiniProject:
         return self.venv / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
     def variables(self, **changes):
-        """Return an environment in which pip knows nothing but the wheel folder; None takes a variable away."""
-        variables = {name: value for name, value in os.environ.items() if not name.startswith(("PIP_", "COV_"))}
+        """Return an environment in which pip knows nothing but the wheel folder, Python no folder but its own.
+
+        None takes a variable away.
+        """
+        left_out = ("PIP_", "COV_", "PYTHONPATH")
+        variables = {name: value for name, value in os.environ.items() if not name.startswith(left_out)}
         variables |= {"PIP_CONFIG_FILE": os.devnull, "PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(self.wheels)}
         variables |= {"PYTHONDONTWRITEBYTECODE": "1"}
         variables |= {name: value for name, value in changes.items() if value is not None}
@@ -98,7 +102,9 @@ class MiniProject:
     def python(self, code):
         """Run code with the Python of .venv."""
         command = [str(self.interpreter), "-P", "-c", code]
-        return subprocess.run(command, capture_output=True, encoding="utf-8", cwd=self.root / "notebooks")
+        return subprocess.run(
+            command, env=self.variables(), capture_output=True, encoding="utf-8", cwd=self.root / "notebooks"
+        )
 
 
 def one_line(process):

@@ -47,7 +47,8 @@ def program(tmp_path_factory):
 
 
 def run(program, folder, *arguments):
-    return subprocess.run([program, *arguments], cwd=folder, capture_output=True, text=True, timeout=60)
+    variables = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    return subprocess.run([program, *arguments], cwd=folder, env=variables, capture_output=True, text=True, timeout=60)
 
 
 def test_a_folder_is_made_once_and_the_launcher_there_takes_over(program, tmp_path):

@@ -103,6 +103,7 @@ def functions_are_asked_for_in_their_notebook(path, notebook):
                 defined = re.search(begin + r"([^)]*)\):", cell.source, re.M | re.S)
                 assert tuple(re.findall(r"(?:^|, )(\w+)", defined[1])) == wanted.signature
                 assert "..." in cell.source
+                assert not imported_names(cell.source), "a function is taken with its cell, and may import NumPy alone"
 
 
 def test_no_text_names_a_notebook_that_is_not_there():
