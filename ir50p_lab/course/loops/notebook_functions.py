@@ -1,4 +1,4 @@
-"""The function of 09 that stays in its notebook: the course's, what it is tried on, typical slips."""
+"""The function of 09 that stays in its notebook: the course's, what it is tried on, typical mistakes."""
 
 import numpy as np
 
