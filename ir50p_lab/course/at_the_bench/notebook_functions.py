@@ -108,8 +108,9 @@ TASKS = notebook_tasks(
     __file__,
     circle=(circle, _times, "three rows: angles, speeds, zeros", {
         "mistakes": (Mistake(_no_rate, _CLOCK), Mistake(_no_radius, _METRES), Mistake(_other_sense, _ACROSS),
-                  Mistake(_old_jacobian, _ELSEWHERE)), "tolerance": 1e-6}),
-    motor_law=(motor_law, _pushes, "a way for each t", {"slips": (Mistake(_before, _BEFORE), Mistake(_speed, _SPEED))}),
+                     Mistake(_old_jacobian, _ELSEWHERE)), "tolerance": 1e-6}),
+    motor_law=(motor_law, _pushes, "a way for each t", {
+        "mistakes": (Mistake(_before, _BEFORE), Mistake(_speed, _SPEED))}),
     once_round=(once_round, _loops, "size and degrees, two numbers", {
         "results": ("size", "degrees"),
         "mistakes": (Mistake(_radians, _DEGREES), Mistake(_no_sum, _SUM), Mistake(_prompt, _LATE))}),

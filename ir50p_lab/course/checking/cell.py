@@ -12,24 +12,21 @@ import re
 import numpy as np
 
 from ir50p_lab.course.checking.explain_error import ROOM
+from ir50p_lab.course.checking.judge_text import CannotTake, check_allowed, plain_function
 from ir50p_lab.course.checking.tasks import task as task_of_name
 from ir50p_lab.course.robot import student_package
 from ir50p_lab.course.robot.catalogue import ORDER
 from ir50p_lab.course.robot.source import GIVEN, Source
 
-_ALLOWED = {"numpy", "math", "cmath", "collections", "dataclasses", "functools", "itertools", "operator", "typing"}
 _BACK_DOORS = {"__import__", "eval", "exec", "compile", "open", "input", "getattr", "setattr", "globals", "vars"}
 
 
-class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never shown as an error)
-    """The cell cannot stand alone; the message says why and what to do."""
-
-
-def extract(thing, name, earlier, given=""):
+def extract(thing, name, earlier, given="", function_arguments=()):
     """Return the Source of a function or class as its cell has it.
 
     name: what it has to be called; earlier: names of the functions of `my_robot` it may lean on. Lines of the cell that
-    it does not need stay behind; given: text of helpers that it may use. Raises CannotTake, saying why: another name, a
+    it does not need stay behind; given: text of helpers that it may use; function_arguments: names of those that are
+    functions. Raises CannotTake, saying why: another name, a
     variable or an import from elsewhere.
     """
     thing = inspect.unwrap(thing)
@@ -59,12 +56,15 @@ def extract(thing, name, earlier, given=""):
         elif one in _BACK_DOORS:
             raise CannotTake(f"it uses `{one}`: your robot stands on plain functions and NumPy alone")
         elif one not in GIVEN and not hasattr(builtins, one):
-            raise CannotTake(_stranger(one, getattr(_plain(thing), "__globals__", {}), text))
-    for node in wanted:
-        _refuse_imports(node)
+            notebook = getattr(plain_function(thing), "__globals__", {})
+            unused = [argument for argument in function_arguments if argument not in _names_in(offered[name])]
+            if unused and callable(notebook.get(one)):
+                raise CannotTake(
+                    f"it calls `{one}` of the notebook: it gets the function as its argument `{unused[0]}`"
+                )
+            raise CannotTake(_stranger(one, notebook, text))
     patches = [one for one in tree.body if re.match(r"(np|numpy|math)\.\w+ = ", ast.unparse(one))]
-    for node in [*wanted, *patches]:
-        _refuse_changes(node)
+    check_allowed([*wanted, *patches])
     wanted.sort(key=lambda node: node.lineno)
     return Source(name, "\n\n\n".join(_lines(text, node) for node in wanted), tuple(sorted(calls)))
 
@@ -81,18 +81,11 @@ def compile_source(source, task):
 
 
 def _cell_text(thing):
-    code = getattr(_plain(thing), "__code__", None)
+    code = getattr(plain_function(thing), "__code__", None)
     text = "".join(linecache.getlines(code.co_filename)) if code else ""
     if not text:
         raise CannotTake("its text is not to be found: define it in a cell of the notebook, with `def`")
     return text
-
-
-def _plain(thing):
-    """The function; for a class its first method; None if it has none."""
-    if hasattr(thing, "__code__"):
-        return thing
-    return next((value for value in vars(thing).values() if hasattr(value, "__code__")), None)
 
 
 def _definitions(tree):
@@ -109,6 +102,11 @@ def _definitions(tree):
             if node.names[0].name == "*" and node.module in GIVEN:
                 found |= dict.fromkeys(dir(importlib.import_module(node.module)), node)
     return {name: node for name, node in found.items() if name not in GIVEN}
+
+
+def _names_in(node):
+    """Names that a definition uses, its arguments' own places aside."""
+    return {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
 
 
 def _globals_of(node):
@@ -140,58 +138,6 @@ def _stranger(name, notebook, text):
     if callable(value) or hasattr(value, "__file__"):
         return f"it uses `{name}` of the notebook: put it into the same cell, or write that part yourself"
     return f"it uses `{name}`, a variable of the notebook: a function takes what it needs as arguments"
-
-
-def _refuse_imports(node):
-    for one in ast.walk(node):
-        if isinstance(one, ast.Import):
-            modules = [alias.name for alias in one.names]
-        elif isinstance(one, ast.ImportFrom):
-            modules = [one.module or "."]
-        else:
-            continue
-        for module in modules:
-            if module.partition(".")[0] not in _ALLOWED:
-                raise CannotTake(f"it imports {module}: your robot stands on NumPy alone, and this part is yours")
-
-
-def _refuse_changes(node):
-    """Refuse code that assigns to, or reads dunder names of, anything but `self`: `np.allclose = ...`."""
-    for one in ast.walk(node):
-        if not isinstance(one, ast.Attribute):
-            continue
-        root = ast.unparse(one).partition(".")[0].partition("[")[0]
-        opens = one.attr.startswith("__") or not isinstance(one.ctx, ast.Load)
-        if root != "self" and opens:
-            raise CannotTake(
-                f"it changes or opens `{ast.unparse(one)}`: a function returns its answer and leaves the rest"
-            )
-
-
-def has_dots(text):
-    """The lines in which dots still stand where the answer should be (those of `a[..., 0]` do not count)."""
-    tree = ast.parse(text)
-    indices = {id(one) for node in ast.walk(tree) if isinstance(node, ast.Subscript) for one in ast.walk(node.slice)}
-    dots = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and node.value is ...]
-    return [text.splitlines()[node.lineno - 1].strip() for node in dots if id(node) not in indices]
-
-
-def written_wrong(function):
-    """What a function's own lines tell: an argument overwritten, `==` for `=`, one array under many names; or ""."""
-    code = getattr(_plain(inspect.unwrap(function)), "__code__", None)
-    file, given = getattr(code, "co_filename", ""), code.co_varnames[: code.co_argcount] if code else ()
-    tree = ast.parse("".join(linecache.getlines(file)) if file.startswith(ROOM) else "")
-    for one in [part for function in ast.walk(tree) if isinstance(function, ast.FunctionDef) for part in function.body]:
-        match one:
-            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant()) if name in given:
-                return f"`{ast.unparse(one)}` overwrites what came in"
-            case ast.Expr(value=ast.Compare(ops=[ast.Eq()])):
-                return f"`{ast.unparse(one)}` compares and puts nothing anywhere: two equal signs are a question"
-            case ast.Assign(value=ast.Call() | ast.List(), targets=[_, _, *_] as names):
-                filled = [ast.unparse(name) for name in names if f"\n    {ast.unparse(name)}[" in ast.unparse(tree)]
-                if len(filled) > 1:
-                    return f"{' and '.join(filled)} are names of one array: what is put into one changes all"
-    return ""
 
 
 def _lines(text, node):

@@ -6,9 +6,10 @@ import random
 import timeit
 
 from ir50p_lab.course import lab_book
-from ir50p_lab.course.checking.cell import CannotTake, extract, has_dots
+from ir50p_lab.course.checking.cell import extract
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.in_notebook import check_here
+from ir50p_lab.course.checking.judge_text import CannotTake, has_dots
 from ir50p_lab.course.checking.note import Note, show, with_full_stop
 from ir50p_lab.course.checking.numbers import check_number
 from ir50p_lab.course.checking.tasks import task
@@ -40,7 +41,7 @@ def check(name, answer=...):
     if answer is ...:
         return _show("open", name, f"not written yet: {wanted.returns}")
     try:
-        source = extract(answer, wanted.function, wanted.leans_on, wanted.given)
+        source = extract(answer, wanted.function, wanted.leans_on, wanted.given, wanted.function_arguments)
     except CannotTake as reason:
         return _show("wrong", name, f"not yet: {with_full_stop(str(reason))}")
     if dots := has_dots(source.text):

@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ir50p_lab.course.checking.calling import call, case_in_words, check_signature
-from ir50p_lab.course.checking.cell import compile_source, written_wrong
+from ir50p_lab.course.checking.cell import compile_source
 from ir50p_lab.course.checking.distortions import distortions, entries
+from ir50p_lab.course.checking.judge_text import written_wrong
 from ir50p_lab.course.checking.shape_checks import kind_of, no_numbers, number_of_results
 from ir50p_lab.course.checking.task import Failed, short_text
 from ir50p_lab.course.robot.source import Source
@@ -108,6 +109,20 @@ def _mistakes(trial):
         yield from distortions(trial.task)
 
 
+def _whole_arguments(trial):
+    """Right but where an array of whole numbers comes in: one made from it keeps its kind."""
+    whole = [k for k, case in enumerate(trial.cases) if any(map(_is_whole_array, case))]
+    if trial.bad != whole or len(whole) == len(trial.cases):
+        return ""
+    arguments = zip(trial.task.signature, trial.cases[whole[0]], strict=True)
+    name = next(name for name, value in arguments if _is_whole_array(value))
+    return (
+        f"it is right but where `{name}` holds whole numbers: an array made from it (`np.zeros_like({name})`, "
+        f"`{name}.copy()`) holds whole numbers only and cuts off what is put in; `np.zeros(3)`, `{name}.astype(float)` "
+        "do not"
+    )
+
+
 def _outside(trial):
     now = _beside(trial.function)
     changed = [name for name, before in trial.before.items() if now[name] != before]
@@ -195,6 +210,7 @@ def _symptom(trial):
 READINGS = (  # of a wrong answer, in this order: the first that has something to say is told
     _written,  # its own lines: an argument overwritten, `==` for `=`, one array under two names
     _known,  # mistakes of the task, results and arguments spoilt in usual ways
+    _whole_arguments,  # right, but where whole numbers come in
     _outside,  # a list or array beside it that each call changes
     _stops,  # the line in which it stopped, and why
     _form,  # nothing, another kind of thing, another number of results, another shape
@@ -240,6 +256,10 @@ def _is_zero(value):
 
 def _is_whole(value):
     return np.array_equal(value, np.round(value))
+
+
+def _is_whole_array(value):
+    return isinstance(value, np.ndarray) and value.dtype.kind == "i"
 
 
 def _by_a_constant(returned, expected):

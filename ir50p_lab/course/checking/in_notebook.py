@@ -1,9 +1,7 @@
 """check of a function that stays in its notebook: it is tried as it stands there, and the course's serves meanwhile."""
 
-import inspect
-
-from ir50p_lab.course.checking.cell import has_dots
 from ir50p_lab.course.checking.grade import grade
+from ir50p_lab.course.checking.judge_text import is_open
 from ir50p_lab.course.checking.note import Note, show, with_full_stop
 from ir50p_lab.course.checking.tasks import of_notebook
 
@@ -11,7 +9,7 @@ from ir50p_lab.course.checking.tasks import of_notebook
 def check_here(name, function):
     """Say what was found in a function of a notebook; return it where it is right, else the course's own."""
     wanted = of_notebook(name)
-    if function is ... or _has_dots(function):
+    if function is ... or is_open(function):
         show(Note("open", name, f"not written yet. It returns {wanted.returns}. Until then the course's serves."))
         return wanted.reference
     found = grade(wanted, function)
@@ -22,10 +20,3 @@ def check_here(name, function):
     says = f"not yet: {with_full_stop(found.says)} Until then the course's serves."
     show(Note("wrong", name, says, more, open_first=bool(more)))
     return wanted.reference
-
-
-def _has_dots(function):
-    try:
-        return bool(has_dots(inspect.getsource(function)))
-    except (OSError, TypeError, SyntaxError):  # typed into a console
-        return False

@@ -148,6 +148,12 @@ class Task:
         object.__setattr__(self, "signature", self.signature or names)
         object.__setattr__(self, "function", self.name.partition(".")[0])
 
+    @property
+    def function_arguments(self):
+        """Names of the arguments that are functions."""
+        case = self.cases()[0] if self.cases else ()
+        return tuple(name for name, value in zip(self.signature, case, strict=False) if callable(value))
+
     def of(self, result):
         """The task of one of several results alone."""
         mistakes = tuple(replace(one, function=nth_result(one.function, result)) for one in self.mistakes)

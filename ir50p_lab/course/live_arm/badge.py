@@ -1,10 +1,9 @@
 """Whose code moves an arm: told from the function that a view is given."""
 
 import inspect
-import textwrap
 
 from ir50p_lab.course import my_robot
-from ir50p_lab.course.checking.cell import has_dots
+from ir50p_lab.course.checking.judge_text import is_open
 from ir50p_lab.course.robot.catalogue import ORDER, stays
 
 _WEAKEST_FIRST = ("not written yet", "the course's", "on loan", "yours")
@@ -43,7 +42,7 @@ def _of_function(function, seen):
         yield "the course's"
         return
     if package != "ir50p_lab":
-        yield "not written yet" if _has_dots(function) else "yours"
+        yield "not written yet" if is_open(function) else "yours"
         names = _names(function.__code__)
         robots = names.intersection(ORDER) if "my_robot" in names else set()
         yield from map(my_robot.whose, robots)
@@ -56,10 +55,3 @@ def _names(code):
     """All names that a code looks up outside itself, those of functions within it, too."""
     inner = [one for one in code.co_consts if hasattr(one, "co_names")]
     return set(code.co_names).union(*map(_names, inner))
-
-
-def _has_dots(function):
-    try:
-        return has_dots(textwrap.dedent(inspect.getsource(function)))
-    except (OSError, SyntaxError):  # typed into a console; a part of a longer line
-        return False

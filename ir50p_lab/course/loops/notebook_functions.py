@@ -1,4 +1,4 @@
-"""The function of 09 that stays in its notebook: the course's, what it is tried on, typical slips."""
+"""The function of 09 that stays in its notebook: the course's, what it is tried on, typical mistakes."""
 
 import numpy as np
 
@@ -28,5 +28,5 @@ _TERM = "e stands twice in it once it is multiplied out: the integral of the spe
 TASKS = notebook_tasks(
     __file__,
     rule=(rule, _joints, "Kp, Ki and Kd, three numbers", {
-        "results": ("Kp", "Ki", "Kd"), "slips": (Mistake(_first_term, _TERM),)}),
+        "results": ("Kp", "Ki", "Kd"), "mistakes": (Mistake(_first_term, _TERM),)}),
 )  # fmt: skip

@@ -12,7 +12,8 @@ from cells import cell
 from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking import grade as grading
 from ir50p_lab.course.checking.calling import call, case_in_words
-from ir50p_lab.course.checking.cell import CannotTake, extract
+from ir50p_lab.course.checking.cell import extract
+from ir50p_lab.course.checking.judge_text import CannotTake
 from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.robot.catalogue import written
 
@@ -263,3 +264,19 @@ def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypa
                 continue
             assert verdict.says in {one.symptom(*answers[k]) for k in there if k in answers}
     assert shown > 0.8 * len(known)
+
+
+def test_a_function_of_the_notebook_in_place_of_the_argument_is_told(capsys):
+    name, text = "rk4_step", solutions.source("rk4_step")
+    said = told(capsys, name, text=text.replace("f(t", "falling(t"), notebook={"falling": np.sin})
+    assert "it gets the function as its argument `f`" in said
+
+
+@pytest.mark.parametrize("name", ["velocity_torque", "gravity_torque"])
+def test_an_array_that_takes_its_kind_from_whole_angles_is_told(capsys, name):
+    text = solutions.source(name)
+    body = (
+        f"\n\n\ndef {name}(q, *others):\n    tau = np.zeros_like(q)\n    tau[:] = right(q, *others)\n    return tau\n"
+    )
+    said = told(capsys, name, text=text.replace(f"def {name}(", "def right(") + body)
+    assert "it is right but where `q` holds whole numbers" in said.replace("\n", " ")

@@ -66,6 +66,13 @@ def test_a_choice_is_one_of_those_there_are(capsys):
     assert 'why("level", "...")' in said(capsys)
 
 
+def test_a_wrong_choice_is_no_difference(capsys):
+    predict("sim.honey", 1, choices={1: "slower", 2: "as fast", 3: "faster"})
+    measured("sim.honey", 3)
+    words = said(capsys)
+    assert "sim.honey: you guessed slower, it is faster\n" in words and " off" not in words
+
+
 @pytest.mark.parametrize(("guess", "options", "asks"), [(0.95, {}, 0), (0.85, {}, 1), (0.85, {"within": 0.2}, 0)])
 def test_measured_asks_why_where_a_guess_is_off_by_more_than_it_may(capsys, guess, options, asks):
     predict("p.ends", guess, "rad", **options)

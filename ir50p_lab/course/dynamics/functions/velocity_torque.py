@@ -38,7 +38,8 @@ def _motions():
     speeds[2:5] = np.diag([2.0, -2.5, 3.0])  # one joint at a time
     speeds[5] = 0
     masses = (arm_mass, made_up_mass)
-    return [(rng.uniform(-1.5, 1.5, 3), qd, masses[k % 2 if k < 2 else k % 3 > 0]) for k, qd in enumerate(speeds)]
+    cases = [(rng.uniform(-1.5, 1.5, 3), qd, masses[k % 2 if k < 2 else k % 3 > 0]) for k, qd in enumerate(speeds)]
+    return [*cases, (np.array([0, 1, -1]), speeds[0], arm_mass)]  # whole numbers, as a student types them
 
 
 def _symptom(case, returned, expected):
