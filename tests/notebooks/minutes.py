@@ -86,9 +86,7 @@ def sessions(path):
 def filled(text):
     """The text of README with the minutes of its table as counted."""
     for path in rewritten():
-        text = re.sub(
-            rf"(\| \[`{path.stem}`\].*\| )[\d, core]+( \| \w+ \|)$", rf"\g<1>{_said(path)}\2", text, flags=re.M
-        )
+        text = re.sub(rf"(\| \[`{path.stem}`\].*\| )[\d, core]+( \|)$", rf"\g<1>{_said(path)}\2", text, flags=re.M)
     return text
 
 

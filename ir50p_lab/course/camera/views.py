@@ -4,6 +4,7 @@ import numpy as np
 
 from ir50p_lab.course.draw.pictures import STAMP, show_picture
 from ir50p_lab.course.draw.style import COLOURS, new_figure, subplots
+from ir50p_lab.vision import Checkerboard
 
 
 def bare_picture(ax, image, title=""):
@@ -73,8 +74,9 @@ def board_residual_figure(picture, flat, bent):
     bare_picture(first, picture, "One of the pictures")
     for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Its shape free"), strict=True):
         deeper = np.mean([_depths(one, view) for view in one.views], axis=0)
-        columns, rows = one.board.pattern
-        place = 1000 * one.board.square * np.array([-0.5, columns - 0.5, rows - 0.5, -0.5])
+        board = one.board or bent.board or Checkerboard()  # corners that were given name no board
+        columns, rows = board.pattern
+        place = 1000 * board.square * np.array([-0.5, columns - 0.5, rows - 0.5, -0.5])
         drawn = ax.imshow(1000 * deeper.reshape(rows, columns), cmap="PuOr", vmin=-1, vmax=1, extent=place)
         ax.set(xlabel="along the board [mm]", ylabel="down the board [mm]")
         ax.set_title(f"{name}: rms {one.rms:.3f} px", fontsize=9)
