@@ -15,7 +15,7 @@ from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 
 
-def until(condition, timeout=10.0):
+def until(condition, timeout=60.0):  # s, on a busy machine
     deadline = time.monotonic() + timeout
     while not condition():
         assert time.monotonic() < deadline, "nothing happened in time"
