@@ -1,5 +1,7 @@
 """Ranges of hue, saturation and value across the seam; colours learnt from a click."""
 
+import colorsys
+
 import numpy as np
 import pytest
 from drawn_balls import add_ball, empty, photograph
@@ -101,3 +103,13 @@ def test_a_click_near_the_rim(part):
         click = 200 + 30 * part * np.cos(angle), 200 + 30 * part * np.sin(angle)
         mask = learn_colour(shown, click).mask(shown) > 0
         assert mask[190:211, 190:211].mean() > 0.95 and mask.mean() < 0.02
+
+
+@pytest.mark.parametrize(
+    ("hue", "pink", "taken"), [(355, 325, True), (340, 312, True), (10, 340, False), (5, 335, False)]
+)
+def test_only_a_red_with_more_blue_than_green_looks_pink_in_too_much_light(hue, pink, taken):
+    colour = Colour(hue=hue, tolerance=20)
+    pixel = np.uint8([[255 * np.array(colorsys.hsv_to_rgb(pink / 360, 0.45, 1.0))]])
+    assert (colour.loose_mask(colour.hsv_of(pixel)) > 0).all() == taken
+    assert not (colour.loose_mask(colour.hsv_of(pixel // 2)) > 0).any()  # a dim pink is no red
