@@ -74,7 +74,7 @@ def rewritten():
 
 
 def _said(path):
-    return f"{minutes(path)}, core {core(path)}"
+    return f"{minutes(path)}, core {core(path)} ({sessions(path)})"
 
 
 def sessions(path):
@@ -86,7 +86,7 @@ def sessions(path):
 def filled(text):
     """The text of README with the minutes of its table as counted."""
     for path in rewritten():
-        text = re.sub(rf"(\| \[`{path.stem}`\].*\| )[\d, core]+( \|)$", rf"\g<1>{_said(path)}\2", text, flags=re.M)
+        text = re.sub(rf"(\| \[`{path.stem}`\].*\| )\d+[^|]*( \|)$", rf"\g<1>{_said(path)}\2", text, flags=re.M)
     return text
 
 
