@@ -86,8 +86,7 @@ def warn_of_degrees(arm, q, *, stacklevel=3):
     limits = np.maximum(np.negative(getattr(arm, "q_min", _NO_LIMITS)), getattr(arm, "q_max", _NO_LIMITS))
     beyond = np.abs(q) - np.where(np.isfinite(limits), limits, 3 * _TURN)
     if (beyond > _TURN).any():
-        angle = q.flat[np.argmax(beyond)]
-        said = f"q has {angle:.4g}, more than a turn beyond the arm's limits: angles are in radians"
+        said = "q has an angle more than a turn beyond the arm's limits: angles are in radians"  # one text: said once
         warnings.warn(f"{said} (np.radians turns degrees into them)", SuspiciousAngleWarning, stacklevel=stacklevel)
 
 

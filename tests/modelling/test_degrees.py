@@ -28,7 +28,7 @@ TAKES_ANGLES = {
 @pytest.mark.parametrize("name", TAKES_ANGLES)
 @pytest.mark.parametrize("q", [(30, 0, -20), (0, 90, 0), (0.0, 0.0, -135.0)])
 def test_degrees_are_warned_of_where_they_are_given(name, q):
-    with pytest.warns(SuspiciousAngleWarning, match=rf"q has {max(q, key=abs):g}, .*np.radians") as caught:
+    with pytest.warns(SuspiciousAngleWarning, match=r"q has an angle more than a turn .*np\.radians") as caught:
         TAKES_ANGLES[name](SMOOTH, q)
     assert len(caught) == 1 and caught[0].filename == __file__
 
@@ -36,7 +36,7 @@ def test_degrees_are_warned_of_where_they_are_given(name, q):
 def test_many_poses_and_a_theta():
     poses = np.array([ZERO, [0, 0, 45.0], ZERO])
     for arm in (SMOOTH, SMOOTH.theta):
-        with pytest.warns(SuspiciousAngleWarning, match="q has 45"):
+        with pytest.warns(SuspiciousAngleWarning, match="q has an angle"):
             m.gravity(arm, poses)
 
 

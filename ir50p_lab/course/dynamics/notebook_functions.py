@@ -42,7 +42,8 @@ def torque(q, qd, qdd):
 
 def acceleration(q, qd, tau):
     """The accelerations (3,) rad/s² that torques (3,) N m make, without friction."""
-    return forward_dynamics(load_arm().without_friction(), q, qd, tau)
+    arm = load_arm().without_friction()
+    return forward_dynamics(arm.theta, q, qd, tau, g=arm.g)
 
 
 def _of_tip(arm, q):

@@ -9,7 +9,8 @@ from ir50p_lab.modelling.friction import friction_torque as friction
 
 def falling(t, x):
     """The rates (6,) of the state x: angles and speeds of an arm without motors and friction."""
-    return np.concatenate([x[3:], forward_dynamics(load_arm().without_friction(), x[:3], x[3:], np.zeros(3))])
+    arm = load_arm().without_friction()
+    return np.concatenate([x[3:], forward_dynamics(arm.theta, x[:3], x[3:], np.zeros(3), g=arm.g)])
 
 
 def halve(too_much, too_short, enough):
