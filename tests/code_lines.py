@@ -17,7 +17,7 @@ NOT_OURS = {"node_modules", "__pycache__"}
 ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {  # what there is; the design asks for less in bench, course, launcher, root and tests
-    "modelling": 1291,
+    "modelling": 1290,
     "signals": 380,
     "controllers": 318,
     "simulation": 456,
