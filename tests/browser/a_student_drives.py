@@ -38,15 +38,15 @@ def push(page):
     last = page.locator(".la").count() - 1
     view = VIEW.format(last)
     show(page, last)
-    page.wait_for_function(f"() => {view}.mostPush", timeout=60_000)
-    (x, y), before = page.evaluate(f"() => [{view}.onPage({view}.tipAt), {view}.tipAt]")
+    page.wait_for_function(f"() => {view}.hand.mostPush", timeout=60_000)
+    (x, y), before = page.evaluate(f"() => [{view}.scene.onPage({view}.scene.tipAt), {view}.scene.tipAt]")
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 100, y, steps=4)
     text = page.locator(".la-note", has_text="you push").last.text_content(timeout=60_000)
     assert re.fullmatch(r"you push with \d+\.\d N at link 3", text), text
     page.wait_for_function(
-        f"(old) => Math.hypot(...{view}.tipAt.map((v, i) => v - old[i])) > 0.01", arg=before, timeout=60_000
+        f"(old) => Math.hypot(...{view}.scene.tipAt.map((v, i) => v - old[i])) > 0.01", arg=before, timeout=60_000
     )
     page.mouse.up()
     assert page.locator(".la-note", has_text="you push").count() == 0

@@ -6,7 +6,6 @@ All that lies between a cell and these is the package itself: `connect()` finds 
 import os
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 from ir50p_lab.bench import SerialBench, nominal_calibration, serial_bench
@@ -62,7 +61,7 @@ class Webcam:
 
     def read(self):
         frame, first, self._first = self._camera.read(), self._first, None
-        return replace(frame, simulated=False, image=frame.image if first is None else first)
+        return frame._replace(simulated=False, image=frame.image if first is None else first)
 
     def close(self):
         self._camera.close()
