@@ -70,5 +70,6 @@ def test_a_student_measures(browser, tmp_path):
                 handed_in(page, number, asked[1])
             else:
                 everything += run(page, number, source)
+        everything += run(page, number, 'connect("simulated").close()')  # the readings are of this arm
     assert "Bench: board on emulated" in everything and "The simulated arm instead" not in everything
     assert "Kept: calibration-1" in everything and "calibration: yours, calibration-2" in everything
