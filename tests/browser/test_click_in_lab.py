@@ -35,5 +35,7 @@ def test_a_click_names_its_pixel(browser, tmp_path):
         said = page.get_by_text(re.compile(r"pixel \d+, \d+")).last.text_content(timeout=60_000)
         x, y = map(int, re.findall(r"\d+", said))
         assert abs(x - 150) <= 2 and abs(y - 40) <= 2
-        page.wait_for_function("before => document.querySelector('img[alt=\"a red field\"]').src !== before", arg=before)
+        page.wait_for_function(
+            "before => document.querySelector('img[alt=\"a red field\"]').src !== before", arg=before
+        )
         context.close()

@@ -41,6 +41,7 @@ class PictureView(widgets.VBox):
 
     @property
     def picture(self):
+        """The picture that is shown."""
         return self._picture
 
     @picture.setter
@@ -58,6 +59,7 @@ class PictureView(widgets.VBox):
 
     @property
     def circles(self):
+        """What is drawn over it: (x, y, radius, colour) each, px."""
         return self._circles
 
     @circles.setter
@@ -69,7 +71,7 @@ class PictureView(widgets.VBox):
         shown = Image.fromarray(self._picture)
         pen = ImageDraw.Draw(shown)
         for x, y, radius, colour in self._circles:
-            pen.ellipse((x - radius, y - radius, x + radius, y + radius), outline=colour, width=2)
+            pen.ellipse((x - radius, y - radius, x + radius, y + radius), outline=colour, width=3)
         width = f"{self._picture.shape[1]}px"
         self.canvas.layout = {"width": width, "max_width": "100%", "border": "1px solid #999999"}
         self.canvas.value = encode_png(np.asarray(shown))

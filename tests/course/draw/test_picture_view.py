@@ -38,7 +38,9 @@ def test_a_mask_is_black_and_white():
     assert (shown(PictureView(mask)) == 255 * mask[..., None]).all()
 
 
-@pytest.mark.parametrize("picture", [PICTURE[..., 0], PICTURE / 255, PICTURE[..., :2], None, np.zeros((0, 0, 3), np.uint8)])
+@pytest.mark.parametrize(
+    "picture", [PICTURE[..., 0], PICTURE / 255, PICTURE[..., :2], None, np.zeros((0, 0, 3), np.uint8)]
+)
 def test_what_is_no_picture_is_refused(picture):
     with pytest.raises(InputError, match="give bytes"):
         PictureView(picture)
