@@ -88,8 +88,11 @@ def wrong_one(function, changes):
 
 def mistakes(function):
     """The mistakes in the table of a function."""
-    text = sections(function.__name__, inspect.getfile(function)).get("mistakes", "")
-    return tuple(Mistake(wrong_one(function, changes), says) for says, changes in changes_of(text))
+    return _made(function, sections(function.__name__, inspect.getfile(function)).get("mistakes", ""))
+
+
+def _made(function, table):
+    return tuple(Mistake(wrong_one(function, changes), says) for says, changes in changes_of(table))
 
 
 def nth_result(function, result):
@@ -211,15 +214,18 @@ def words(name, beside):
 
 
 def notebook_tasks(beside, **asked):
-    """Tasks of functions that stay in their notebook: {name: Task}; NAME=(right, cases, what it returns, options).
+    """Tasks of functions that stay in their notebook: {name: Task}.
 
-    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module, each below its name.
+    asked: NAME=(right, cases, what it returns, a dict of other options if there are any).
+
+    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module, each below its name;
+    below "NAME: mistakes" the table of mistakes, made out of the course's own.
     """
-    texts = sections("notebook_functions", beside)
-    return {
-        name: Task(name, asks, right, solution_text=texts[name], cases=cases, **options)
-        for name, (right, cases, asks, options) in asked.items()
-    }
+    texts, tasks = sections("notebook_functions", beside), {}
+    for name, (right, cases, asks, *options) in asked.items():
+        known = _made(right, texts.get(f"{name}: mistakes", ""))
+        tasks[name] = Task(name, asks, right, texts[name], cases, mistakes=known, **dict(*options))
+    return tasks
 
 
 def _agrees(returned, expected, same, tolerance):
