@@ -173,11 +173,14 @@ class Task:
         )
 
     def agrees(self, returned, expected):
-        """Tell whether what came back is what was expected. Raises TypeError, ValueError for what is no answer."""
-        if not self.results:
-            return _agrees(returned, expected, self.compare, self.tolerance)
-        each = zip(returned, expected, self._of_each(self.compare), self._of_each(self.tolerance), strict=True)
-        return all(_agrees(*one) for one in each)
+        """Tell whether what came back is what was expected; what is no answer is not."""
+        try:
+            if not self.results:
+                return _is_same(returned, expected, self.compare, self.tolerance)
+            each = zip(returned, expected, self._of_each(self.compare), self._of_each(self.tolerance), strict=True)
+            return all(_is_same(*one) for one in each)
+        except (TypeError, ValueError):
+            return False
 
     def expected(self, case, returned):
         """The right answer to a case: of several (`rights`) the one that came back, result by result."""
@@ -186,7 +189,7 @@ class Task:
             also = other(*case)
             try:
                 each = zip(returned, right, also, self._of_each(self.tolerance), strict=True)
-                right = tuple(b if _agrees(one, b, None, within) else a for one, a, b, within in each)
+                right = tuple(b if _is_same(one, b, None, within) else a for one, a, b, within in each)
             except (TypeError, ValueError):  # what came back is no answer
                 return right
         return right
@@ -228,7 +231,7 @@ def notebook_tasks(beside, **asked):
     return tasks
 
 
-def _agrees(returned, expected, same, tolerance):
+def _is_same(returned, expected, same, tolerance):
     if same is not None:
         return same(returned, expected)
     returned, expected = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)
