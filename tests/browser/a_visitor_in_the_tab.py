@@ -129,6 +129,9 @@ def test_what_a_visitor_writes_in_the_tab_stays_and_goes_home(browser, site, tmp
             page.locator("a[download$='.zip']").click()
         download.value.save_as(tmp_path / "mine.zip")
         assert "Your report" in said
+        page.evaluate("() => { const all = jupyterapp.shell.currentWidget.content; all.scrollToItem(all.widgets.length - 1); }")
+        page.locator("a[href$='/01_pose_and_forward_kinematics.ipynb']").last.evaluate("(link) => link.click()")
+        page.wait_for_url("**/*path=notebooks%2F01_pose_and_forward_kinematics.ipynb")
     context.close()
     environment = os.environ | {"IR50P_HOME": str(tmp_path / "laptop")}
     command = [sys.executable, "-m", "ir50p_lab.course.lab_book.update", str(tmp_path / "mine.zip")]

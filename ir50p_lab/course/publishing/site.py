@@ -8,6 +8,7 @@ has not go into its lock: `import ir50p_lab` in a cell then loads all it needs.
 import argparse
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -28,6 +29,7 @@ _WHEN_NEEDED = [*browser_tab.WHEN_NEEDED, "micropip", "ssl"]
 #: What 00 does without: SciPy comes behind it; no widget of the classic notebook, no secure connection from Python.
 _LEFT_OUT = {"ir50p-lab": "scipy", "ipywidgets": "widgetsnbextension", "ssl": "openssl"}
 _WIDGETS = ("anywidget", "@jupyter-widgets/jupyterlab-manager")  # extensions of the page
+_ON_A_MACHINE = "which runs on your own machine"
 _FIRST = "notebooks/index.html?path=notebooks/00_start_here.ipynb"
 _TO_FIRST = f'<meta http-equiv="refresh" content="0; url=./{_FIRST}">'
 _RUNTIME = "pyodide.js pyodide.mjs pyodide.asm.wasm python_stdlib.zip".split()
@@ -126,6 +128,9 @@ def _contents(folder):
         target = folder / source.relative_to(PROJECT)
         target.parent.mkdir(parents=True, exist_ok=True)
         (shutil.copytree if source.is_dir() else shutil.copy)(source, target)
+    last = folder / max(pages).relative_to(PROJECT)
+    text = last.read_text(encoding="utf-8")
+    last.write_text(re.sub(r"\*\*Next\*\*: \[(.*?)\]\(.*?\)", rf"**Next**: \1, {_ON_A_MACHINE}", text), encoding="utf-8")
 
 
 def main():

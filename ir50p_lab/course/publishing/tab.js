@@ -35,3 +35,13 @@ setInterval(() => {
 }, 1000);
 document.addEventListener("visibilitychange", save);
 addEventListener("pagehide", save);
+// A link to a notebook leads there in this very tab: the kernel of the page that is left ends with it.
+document.addEventListener("click", async (event) => {
+  const words = event.target.closest?.("a")?.dataset.commandlinkerArgs;
+  const { path } = words ? JSON.parse(words) : {};
+  if (!path?.endsWith(".ipynb")) return;
+  event.preventDefault();
+  event.stopImmediatePropagation();
+  await open().context.save();
+  location.assign(`?path=${encodeURIComponent(path)}`);
+}, true);
