@@ -6,9 +6,9 @@ from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def circle_votes(points, inwards, radius, shape):
-    """Votes (h, w) of points (n, 2), (x, y) px, with unit vectors inwards (n, 2), for middles `radius` px away    (3.3)."""
+    """Votes (h, w) of points (n, 2), (x, y) px, with unit vectors inwards (n, 2), `radius` px away    (3.3)."""
     votes = np.zeros(shape, dtype=int)
-    for point, direction in zip(points, inwards):
+    for point, direction in zip(points, inwards, strict=True):
         column, row = np.round(point + radius * direction).astype(int)
         if 0 <= row < shape[0] and 0 <= column < shape[1]:
             votes[row, column] = votes[row, column] + 1
@@ -19,9 +19,18 @@ _SMALL = np.array([[3, 2], [7, 2], [5, 0], [5, 4], [4, 2]])  # a small circle ab
 _INTO_IT = np.array([[1.0, 0], [-1, 0], [0, 1], [0, -1], [1, 0]])
 
 
+_SIZES = ((8, 12), 4, 9), ((12, 7), 3, 9), ((9, 9), 9.5, 12), ((6, 10), 2, 0), ((7, 11), 5, 8)
+
+
 def _edges():
     rng, cases = np.random.default_rng(162), []
-    for (h, w), radius, count in (((8, 12), 4, 9), ((12, 7), 3, 9), ((9, 9), 9.5, 12), ((6, 10), 2, 0), ((7, 11), 5, 8)):
+    for (h, w), radius, count in (
+        ((8, 12), 4, 9),
+        ((12, 7), 3, 9),
+        ((9, 9), 9.5, 12),
+        ((6, 10), 2, 0),
+        ((7, 11), 5, 8),
+    ):
         points, turns = rng.integers(0, (w, h), (count, 2)), rng.uniform(-np.pi, np.pi, count)
         inwards = np.column_stack([np.cos(turns), np.sin(turns)])
         if count:  # several for one place in a corner, and one for each side outside

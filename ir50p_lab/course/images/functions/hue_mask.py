@@ -2,7 +2,19 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import sentences, task_of
+from ir50p_lab.course.checking.task import sentences, task_of, text_of
+
+
+def hue_of(rgb):
+    """The hue (...,), rad, of colours (..., 3): an angle on the ring, 0 at red."""
+    r, g, b = np.moveaxis(np.asarray(rgb, dtype=float), -1, 0)
+    return np.arctan2(np.sqrt(3) * (g - b), 2 * r - g - b)
+
+
+def saturation_of(rgb):
+    """How far colours (..., 3) are from grey (...,): 0 to 1; black counts as grey."""
+    most, least = np.max(rgb, axis=-1).astype(float), np.min(rgb, axis=-1)
+    return (most - least) / np.maximum(most, 1e-9)
 
 
 def hue_mask(rgb, hue, tolerance):
@@ -36,13 +48,11 @@ def _pictures():
 
 
 def _is_clear(pixel, hue, tolerance):
-    """Tell whether no reading of hue (a circle, or six straight pieces) and no rounding changes the answer at a pixel."""
+    """Tell whether neither rounding nor another reading of hue (six straight pieces) changes the answer at a pixel."""
     most, least = max(pixel), min(pixel)
     if most == least:
         return True
-    r, g, b = np.float64(pixel)
-    angle = np.arctan2(np.sqrt(3) * (g - b), 2 * r - g - b)
-    apart = abs(np.angle(np.exp(1j * (angle - hue))))
+    apart = abs(np.angle(np.exp(1j * (hue_of(pixel) - hue))))
     return abs((most - least) / most - 0.2) > 0.03 and abs(apart - tolerance) > 0.035
 
 
@@ -55,4 +65,4 @@ def _symptom(case, returned, expected):
     return _SAYS["lost" if expected[row, column] else "taken"].format(*pixel.round().astype(int), *case[1:])
 
 
-TASK = task_of(hue_mask, cases=_pictures, symptom=_symptom)
+TASK = task_of(hue_mask, cases=_pictures, symptom=_symptom, given=text_of(hue_of, saturation_of) + "\n\n\n")
