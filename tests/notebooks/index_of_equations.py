@@ -17,10 +17,13 @@ INDEX = ROOT / "docs" / "index_of_equations.md"
 
 
 def equations(text):
-    """Numbers of equations in a text, ranges of up to ten written out: {"1.4", ...}."""
-    numbers = set(re.findall(r"\((\d\.\d+)[^)\d]*(?=[),;\s-])", text))
-    for group in re.findall(r"\(([^()]*\d\.\d+[^()]*)\)", text):
-        numbers |= set(re.findall(r"(?<![\d.])\d\.\d+(?![\d.])", group))
+    """Numbers of equations in a text, ranges of up to fourteen written out: {"1.4", ...}.
+
+    A number, or several, in brackets of their own: (1.4), (1.5, lost), (1.34, 1.37); 1.4 m or (0.2, 1.4) is none.
+    """
+    numbers = set()
+    for group in re.findall(r"\(([1-4]\.\d+(?:(?:, | and |; )[1-4]\.\d+)*)(?:,? [a-z][^()]*)?\)", text):
+        numbers |= set(re.findall(r"\d\.\d+", group))
     for chapter, first, last in re.findall(r"\((\d)\.(\d+)\)?\s*(?:-|\u2013|to)\s*\(?\1\.(\d+)", text):
         if int(first) < int(last) <= int(first) + 14:
             numbers |= {f"{chapter}.{k}" for k in range(int(first), int(last) + 1)}
@@ -47,17 +50,17 @@ def tags(text):
 
 
 def notebook_mentions():
-    """{tag: [notebook, section]} from the texts of all notebooks."""
+    """{tag: [notebook, section]} from the texts of all notebooks; where a link leads is no mention."""
     found = {}
     for path in sorted((ROOT / "notebooks").glob("[0-9A][0-9]_*.ipynb")):
         section = ""
         for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
-            text = "".join(cell["source"])
+            text = re.sub(r"\]\([^)]*\)", "]", "".join(cell["source"]))
             if cell["cell_type"] != "markdown":
                 continue
-            for part in re.split(r"(?m)^(?=##+ )", text):
-                heading = re.match(r"##+ (\S+)", part)
-                section = heading[1] if heading else section
+            for part in re.split(r"(?m)^(?=## )", text):
+                heading = re.match(r"## (\d\S*|[^\n*(]+)", part)
+                section = heading[1].strip() if heading else section
                 for tag in tags(part):
                     found.setdefault(tag, []).append(f"{path.name[:2]} {section}".strip())
     return found
