@@ -24,13 +24,13 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "bench": 2380,
     "identification": 1479,
     "vision": 2346,
-    "course": 8362,  # without the next two
+    "course": 8331,  # without the next two
     "course/publishing": 468,
     "course/grading": 0,
     "launcher": 575,
     "root": 268,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_322, 19_797, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_291, 19_673, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
