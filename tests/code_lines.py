@@ -23,14 +23,14 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "simulation": 456,
     "bench": 2380,
     "identification": 1479,
-    "vision": 2295,
-    "course": 8496,  # without the next two
+    "vision": 2346,
+    "course": 8465,  # without the next two
     "course/publishing": 469,
     "course/grading": 0,
     "launcher": 575,
     "root": 272,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_410, 19_797, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_378, 19_686, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
