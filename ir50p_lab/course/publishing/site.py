@@ -20,8 +20,9 @@ from ir50p_lab import browser_tab
 from ir50p_lab.errors import LabError
 from ir50p_lab.home import PROJECT
 
-NOTEBOOKS = "00 01 02 03 04 05 06 07 08".split()  # in a tab; in CI without numba, OpenCV, pyserial and loky
-_DATA = ("first_reach.csv", "first_reach.jpg", "drawings", "arm_example.toml")
+NOTEBOOKS = "00 01 02 03 04 05 06 07 08 16".split()  # in a tab; in CI without numba, OpenCV, pyserial and loky
+_DATA = ("first_reach.csv", "first_reach.jpg", "drawings", "arm_example.toml", "scenes")
+_DATA += tuple(f"bench_16{ball}{which}.jpg" for ball in ("", "_blue") for which in ("", "_dim", "_empty"))
 _PURE = "anywidget ipywidgets comm psygnal typing_extensions jupyterlab_widgets widgetsnbextension lazy_loader".split()
 _PURE += "cloudpickle tomlkit tqdm sympy mpmath".split()
 _AT_ONCE = ["ir50p-lab", "ipython", "jedi", "sqlite3", "comm"]  # fetched while the page opens
@@ -29,7 +30,7 @@ _WHEN_NEEDED = [*browser_tab.WHEN_NEEDED, "micropip", "ssl"]
 #: What 00 does without: SciPy comes behind it; no widget of the classic notebook, no secure connection from Python.
 _LEFT_OUT = {"ir50p-lab": "scipy", "ipywidgets": "widgetsnbextension", "ssl": "openssl"}
 _WIDGETS = ("anywidget", "@jupyter-widgets/jupyterlab-manager")  # extensions of the page
-_ON_A_MACHINE = "which runs on your own machine"
+_NEXT = r"(?<=Next\*\*: )\[(?P<title>[^\]]*)\]\((?P<file>[^)]*)\)"
 _FIRST = "notebooks/index.html?path=notebooks/00_start_here.ipynb"
 _TO_FIRST = f'<meta http-equiv="refresh" content="0; url=./{_FIRST}">'
 _RUNTIME = "pyodide.js pyodide.mjs pyodide.asm.wasm python_stdlib.zip".split()
@@ -128,9 +129,13 @@ def _contents(folder):
         target = folder / source.relative_to(PROJECT)
         target.parent.mkdir(parents=True, exist_ok=True)
         (shutil.copytree if source.is_dir() else shutil.copy)(source, target)
-    last = folder / max(pages).relative_to(PROJECT)
-    text = last.read_text(encoding="utf-8")
-    last.write_text(re.sub(r"\*\*Next\*\*: \[(.*?)\]\(.*?\)", rf"**Next**: \1, {_ON_A_MACHINE}", text), encoding="utf-8")
+    for page in (folder / "notebooks").glob("*.ipynb"):
+        page.write_text(re.sub(_NEXT, _only_here, page.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def _only_here(link):
+    """A link to the next notebook, or what it says where the tab has not got that one."""
+    return link[0] if link["file"][:2] in NOTEBOOKS else f"{link['title']}, which runs on your own machine"
 
 
 def main():
