@@ -35,7 +35,9 @@ def site(tmp_path_factory):
     """The folder that the workflow would publish, built in a copy of the project and an environment of its own."""
     room = tmp_path_factory.mktemp("pages")
     copy = room / "project"
-    files = subprocess.run(["git", "ls-files", "-coz", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True, text=True).stdout
+    files = subprocess.run(
+        ["git", "ls-files", "-coz", "--exclude-standard"], cwd=ROOT, capture_output=True, check=True, text=True
+    ).stdout
     for name in filter(None, files.split("\0")):
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, copy / name)
@@ -50,7 +52,7 @@ def site(tmp_path_factory):
     lite.write_text(pinned)
     subprocess.run([sys.executable, "-m", "venv", room / "env"], check=True)
     steps = yaml.safe_load((ROOT / ".github/workflows/pages.yml").read_text())["jobs"]["site"]["steps"]
-    quick = f"pip() {{ {Path(sys.executable).with_name('uv')} pip \"$@\"; }}\n"  # the same packages, from uv's cache
+    quick = f'pip() {{ {Path(sys.executable).with_name("uv")} pip "$@"; }}\n'  # the same packages, from uv's cache
     script = "set -e\n" + quick + "\n".join(step["run"] for step in steps if "run" in step)
     places = {"PYODIDE": str(pyodide), "VIRTUAL_ENV": str(room / "env")}
     path = f"{room / 'env/bin'}{os.pathsep}{os.environ['PATH']}"
@@ -116,9 +118,13 @@ def test_what_a_visitor_writes_in_the_tab_stays_and_goes_home(browser, site, tmp
         page.evaluate("() => jupyterapp.shell.currentWidget.content.scrollToItem(5)")
         page.wait_for_selector(".jp-OutputArea img", timeout=20_000)
 
-        second = opened(context, f"{address}/lab/notebooks/index.html?path=notebooks/01_pose_and_forward_kinematics.ipynb")
+        second = opened(
+            context, f"{address}/lab/notebooks/index.html?path=notebooks/01_pose_and_forward_kinematics.ipynb"
+        )
         assert "'yours'" in run(second, 1, "from ir50p_lab.course import my_robot\nmy_robot.whose('rot_z')")
-        written = solutions.source("dh_matrix") + '\n\nfrom ir50p_lab.course import check\ncheck("dh_matrix", dh_matrix)'
+        written = (
+            solutions.source("dh_matrix") + '\n\nfrom ir50p_lab.course import check\ncheck("dh_matrix", dh_matrix)'
+        )
         assert "dh_matrix: right, and yours" in run(second, 1, "import numpy as np\n" + written)
         heard = "from ir50p_lab.course import my_robot\nmy_robot.whose('rot_z'), my_robot.whose('dh_matrix')"
         assert "('yours', 'yours')" in run(page, 1, heard)
@@ -129,7 +135,9 @@ def test_what_a_visitor_writes_in_the_tab_stays_and_goes_home(browser, site, tmp
             page.locator("a[download$='.zip']").click()
         download.value.save_as(tmp_path / "mine.zip")
         assert "Your report" in said
-        page.evaluate("() => { const all = jupyterapp.shell.currentWidget.content; all.scrollToItem(all.widgets.length - 1); }")
+        page.evaluate(
+            "() => { const all = jupyterapp.shell.currentWidget.content; all.scrollToItem(all.widgets.length - 1); }"
+        )
         page.locator("a[href$='/01_pose_and_forward_kinematics.ipynb']").last.evaluate("(link) => link.click()")
         page.wait_for_url("**/*path=notebooks%2F01_pose_and_forward_kinematics.ipynb")
     context.close()

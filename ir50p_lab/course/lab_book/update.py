@@ -16,7 +16,7 @@ def take_over(folder, named=None):
     """Copy my_robot, results, recordings and notes of the course in the folder named; its notebooks go to `old/`.
 
     A ZIP that `take_home()` made serves as well. Nothing is overwritten: a file that differs from the one here, or
-    cannot be read, is named. Ends the program with a sentence if there is no course in the folder, or if it is this one.
+    cannot be read, is named. Ends the program with a sentence if the folder holds no course, or is this one.
     named: what the folder is called in that sentence.
     """
     if str(folder).lower().endswith(".zip"):

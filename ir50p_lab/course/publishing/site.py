@@ -75,7 +75,7 @@ def build(pyodide, target):
 
 
 def _finish(target):
-    """Lead the site's address to 00, and add to the notebooks' page what saves them. Raises LabError without widgets."""
+    """Lead the site to 00, and add to the notebooks' page what saves them. Raises LabError without widgets."""
     missing = [name for name in _WIDGETS if not (target / "extensions" / name).is_dir()]
     if missing:
         lack = " and ".join(missing)
@@ -142,7 +142,10 @@ def main():
     """Build the site."""
     parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab site", description=__doc__.splitlines()[0])
     parser.add_argument(
-        "--pyodide", required=True, metavar="FOLDER|URL", help="a Pyodide with its packages: docs/developing.md, Browser tab"
+        "--pyodide",
+        required=True,
+        metavar="FOLDER|URL",
+        help="a Pyodide with its packages: docs/developing.md, Browser tab",
     )
     parser.add_argument("--to", default="site", metavar="FOLDER", help="where the site goes (default: site)")
     chosen = parser.parse_args()

@@ -37,10 +37,10 @@ def test_a_name_that_leads_out_of_the_folder_stays_inside(mine, tmp_path):
 @pytest.mark.parametrize("content", [b"", b"no archive"])
 def test_what_is_no_zip_is_said_in_a_sentence(content, tmp_path):
     (tmp_path / "a.zip").write_bytes(content)
-    with pytest.raises(SystemExit, match="a.zip' cannot be unpacked"):
+    with pytest.raises(SystemExit, match=r"a\.zip' cannot be unpacked"):
         take_over(str(tmp_path / "a.zip"))
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):
-    with pytest.raises(SystemExit, match="gone.zip' cannot be unpacked: .*No such file"):
+    with pytest.raises(SystemExit, match=r"gone\.zip' cannot be unpacked: .*No such file"):
         take_over(tmp_path / "gone.zip")
