@@ -17,6 +17,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "checking.numbers": ["solution"],
         "draw.arm3d": ["ArmView"],
         "draw.drawings": ["Drawing", "drawing"],
+        "draw.picture_view": ["PictureView"],
         "draw.style": ["new_figure", "subplots"],
         "draw.traces": ["curves"],
         "draw.widgets": ["live", "slider"],

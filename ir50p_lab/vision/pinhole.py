@@ -6,7 +6,8 @@ import numpy as np
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.inputs import numbers
-from ir50p_lab.vision.arguments import coordinates, picture_size, rigid
+from ir50p_lab.vision.arguments import check_picture_size, coordinates, picture_size, rigid
+from ir50p_lab.vision.image import check_image
 
 _STEPS = 200  # most iterations that take out distortion: they converge slowly near the radius where it folds back
 
@@ -131,6 +132,16 @@ class Pinhole:
         xy = self.undistort_points(xy)
         d = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1)
         return d / np.linalg.norm(d, axis=-1, keepdims=True)
+
+    def straighten(self, image):
+        """The picture (h, w, 3) without distortion: what the same K sees through a lens that does not bend.
+
+        Raises ImageError for what is no picture, CalibrationError for one of another size.
+        """
+        import cv2
+
+        check_picture_size(self, check_image(image).shape[1::-1])
+        return cv2.undistort(image, self.K, self.distortion)
 
     def scaled(self, size):
         """The same lens with a picture of another size (width, height): the field of view in x is kept.

@@ -295,26 +295,6 @@ def test_stop_goes_to_the_rest_pose_first():
         assert np.abs(run.recent(0.1).q[-1] - rest_pose(IR50P)).max() < 0.1
 
 
-def least_lag(run):
-    """Of 20 looks, the least time of the clock minus that of the last sample, s: a busy machine only adds to it."""
-    lags = []
-    for _ in range(20):
-        lags.append(time.perf_counter() - run.recent(0.05).t[-1])
-        time.sleep(0.01)
-    return min(lags)
-
-
-def test_time_is_kept_without_drift():
-    with SimulatedBench(IR50P, record_to=False) as bench:
-        run = bench.start(pid(), None)
-        until(lambda: run.statistics().cycles > 10)
-        early = least_lag(run)
-        until(lambda: run.statistics().cycles > 210)
-        assert least_lag(run) == pytest.approx(early, abs=0.03)
-        assert run.statistics().period_p50 == pytest.approx(0.01, abs=0.0005)
-        run.cut()
-
-
 # ---- in a process of its own
 
 

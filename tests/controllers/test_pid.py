@@ -1,12 +1,10 @@
-"""The sampled PID, one test per feature, and its place in stability theory."""
+"""The sampled PID, one test per feature."""
 
-import control
 import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID, ContinuousPID
 from ir50p_lab.errors import InputError
-from ir50p_lab.modelling import THESIS_A, THESIS_RODS, mass_matrix
 
 ZERO = np.zeros(3)
 
@@ -100,17 +98,6 @@ def test_gains_change_without_a_bump():
     assert (np.abs(run(bumpy, q, target=(0.5, 0.5, 0.5))[-1] - before) > 2).any()
 
 
-def test_gains_may_change_after_a_compiled_run():
-    from ir50p_lab.modelling import IR50P
-    from ir50p_lab.simulation import simulate
-
-    pid = PID(kp=(50, 50, 50), kd=(5, 5, 5))
-    run = simulate(IR50P.without_friction(), pid, (1, 0.5, -0.7), duration=0.5)
-    pid.set_gains(kp=(90, 20, 50), kd=(5, 9, 1))
-    u = pid.step(0.51, run.q[-1] + 0.01 * pid.state[3:6], hold(1, 0.5, -0.7))
-    np.testing.assert_allclose(u, run.u[-1], atol=1.0)  # 40 x the error of 0.3 rad would be far more
-
-
 def test_reset_forgets():
     pid = PID(kp=(1, 1, 1), ki=(1, 1, 1), kd=(1, 1, 1))
     first = run(pid, np.ones((20, 3)))
@@ -134,34 +121,12 @@ def test_after_a_long_pause_the_integral_takes_ten_periods_at_most_and_time_neve
     np.testing.assert_allclose(pid.step(59.0, np.zeros(3), hold(1, 1, 1)), 0.01 + 0.10)
 
 
-def radius(arm, q, kp, kd, period):
-    """Largest eigenvalue of the loop linearised at pose q, sampled and held: from `control`'s discretisation."""
-    M = mass_matrix(arm, q)
-    Z, I = np.zeros((3, 3)), np.eye(3)
-    plant = control.ss(np.block([[Z, I], [Z, Z]]), np.vstack([Z, np.linalg.solve(M, I)]), np.eye(6), np.zeros((6, 3)))
-    held = control.c2d(plant, period, "zoh")
-    return np.abs(np.linalg.eigvals(held.A - held.B @ np.hstack([np.diag(kp), np.diag(kd)]))).max()
-
-
-@pytest.mark.parametrize(
-    "arm, at_home, at_set_point", [(THESIS_A, 16.8, 2.45), (THESIS_RODS, 5.1, 1.46)], ids=["A", "rods"]
-)
-def test_the_thesis_gains_are_unstable_at_10_ms(arm, at_home, at_set_point):
-    """Source: spectral radius of the frozen-M linearisation with the gains of Tables 2.1-2.3."""
-    kp, kd = (25, 200, 200), (10, 40, 40)
-    assert radius(arm, ZERO, kp, kd, 0.01) == pytest.approx(at_home, rel=8e-3)
-    assert radius(arm, (np.pi / 2, np.pi / 2, -np.pi / 3), kp, kd, 0.01) == pytest.approx(at_set_point, rel=5e-3)
-    assert radius(arm, ZERO, kp, kd, 0.0005) < 1
-
-
 @pytest.mark.parametrize(
     "make, words",
     [
         (lambda: PID(kp=(1, -1, 1)), ["kp", "-1", ">= 0"]),
         (lambda: PID(kp=(1, np.nan, 1)), ["kp", "nan"]),
         (lambda: PID(kp=(1, 1)), ["kp", "(2,)"]),
-        (lambda: PID(kp=None), ["kp", "nan"]),
-        (lambda: PID(kp=1, kd=None), ["kd", "nan"]),
         (lambda: PID(kp=(1, 1, 1), period=0), ["period = 0"]),
         (lambda: PID(kp=(1, 1, 1), filter_hz=-1), ["filter_hz = -1"]),
         (lambda: PID(kp=(1, 1, 1), limit=0), ["limit of joint 1 = 0"]),
@@ -169,7 +134,6 @@ def test_the_thesis_gains_are_unstable_at_10_ms(arm, at_home, at_set_point):
         (lambda: PID(kp=(1, 1, 1), derivative_on="nothing"), ["'nothing'", "'error'"]),
         (lambda: PID(kp=(1, 1, 1)).step(0, [0, np.nan, 0], hold(0, 0, 0)), ["measured q", "nan"]),
         (lambda: PID(kp=(1, 1, 1)).step(0, np.zeros((2, 3)), hold(0, 0, 0)), ["(2, 3)"]),
-        (lambda: PID(kp=(1, 1, 1)).step(0, np.array([0, np.nan, 0]), hold(0, 0, 0)), ["measured q", "nan"]),
         (lambda: PID(kp=(1, 1, 1)).step(0, [0, 0, 0], [0, 0, 0]), ["reference", "(3,)"]),
         (lambda: ContinuousPID(kp=(1, 1, 1), limit=-5), ["limit of joint 1 = -5"]),
         (lambda: ContinuousPID(kp=(1, 1, -1)), ["kp", "-1"]),

@@ -198,17 +198,6 @@ def test_too_little_is_refused():
 # --- and nothing else is refused
 
 
-@pytest.mark.parametrize("order", [2, 4])
-def test_plants_of_higher_order_without_swing_are_fitted(order):
-    """Equal lags: the model is not exact, says so, and comes close."""
-    x = SINCE / 0.2
-    y = 1 - np.exp(-x) * sum(x**k / math.factorial(k) for k in range(order))
-    found = fit_fopdt(T_S, STEP, y + noise(1, 0.003))
-    assert found.K == pytest.approx(1, abs=0.05)
-    assert found.T + found.L == pytest.approx(0.2 * order, rel=0.15)  # the area above the response
-    assert "not white" in said(found)
-
-
 @pytest.mark.parametrize("seed", range(20))
 def test_good_records_are_never_refused(seed):
     """2 % noise: T and L above two periods, at least 1.5 T of response."""

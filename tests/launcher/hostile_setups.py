@@ -64,15 +64,6 @@ def test_rebuild_starts_from_nothing(tested):
     assert tested.python("import pebble, pebble_test").returncode == 0
 
 
-def test_foreign_or_half_made_environment_is_rebuilt(project):
-    (project.venv / "lib").mkdir(parents=True)
-    (project.venv / "lib" / "debris.txt").write_text("left by an interrupted run")
-    done = project.run("setup")
-    assert "half made (a set-up was interrupted): building it again" in done.stdout
-    assert done.returncode == 0
-    assert not (project.venv / "lib" / "debris.txt").exists()
-
-
 def test_environment_behind_a_link_keeps_the_link(project, tmp_path):
     elsewhere = tmp_path / "bigger disk"
     elsewhere.mkdir()
@@ -162,14 +153,6 @@ def test_no_network(project):
     assert "HTTPS_PROXY=http" in line
     assert "section 'Offline'" in line
     assert project.run("setup").returncode == 0  # with the network back, the next run repairs
-
-
-def test_wheel_folder_without_a_package(project):
-    lock = project.root / "environment.txt"
-    lock.write_text(lock.read_text() + "granite==2.0\n")
-    line = one_line(project.run("setup"))
-    assert f"The wheel folder ({project.wheels}) has no granite==2.0 for Python" in line
-    assert "section 'Offline'" in line
 
 
 BACKEND = """

@@ -13,8 +13,6 @@ import pytest
 from mini_project import PROJECT, one_line
 
 from ir50p_lab.launcher import commands, problems
-from ir50p_lab.launcher.environment import Environment
-from ir50p_lab.launcher.problems import SetUpError
 
 # -- Python too old --------------------------------------------------------------------------------------------------------
 
@@ -56,21 +54,6 @@ def test_missing_module_names_the_debian_package(project, tmp_path, module):
     assert "came without its modules 'venv' and 'ensurepip'" in line
     assert f"apt install python{sys.version_info.major}.{sys.version_info.minor}-venv" in line
     assert not (project.venv / "pyvenv.cfg").exists()
-
-
-def test_what_debians_venv_prints_is_understood(project, monkeypatch):
-    # Debian's own module venv is there without the package, and answers this (python3.11-minimal 3.11.2).
-    text = (
-        "The virtual environment was not created successfully because ensurepip is not\n"
-        "available.  On Debian/Ubuntu systems, you need to install the python3-venv\n"
-        "package using the following command.\n\n    apt install python3.11-venv\n"
-    )
-    fake = project.root / "python"
-    fake.write_text(f"#!/bin/sh\ncat <<'END'\n{text}END\nexit 1\n")
-    fake.chmod(0o755)
-    monkeypatch.setattr(sys, "_base_executable", str(fake))
-    with pytest.raises(SetUpError, match="apt install python3"):
-        Environment(project.root).ensure()
 
 
 # -- no permission, disk full (in the middle of pip, and without network: hostile_setups.py) -------------------------------
@@ -152,6 +135,11 @@ PRINTED = [
     ("ERROR: Could not fetch URL https://me:secret@a.example/simple/: no", "tried last: https://...@a.example/simple/"),
     ("ERROR: six has an invalid wheel, .dist-info directory not found", "A downloaded package is damaged"),
     ("Error: Command '[...]' returned: No module named ensurepip", "came without its modules"),
+    # Debian's own module venv, without its package
+    (
+        "The virtual environment was not created because ensurepip is not\navailable.  On Debian/Ubuntu",
+        "came without its modules",
+    ),
     ("Collecting six\nERROR: Something nobody has thought of.\n", "Something nobody has thought of. All that"),
     # uv 0.13
     (
@@ -234,18 +222,6 @@ def test_windows_on_arm_is_told_which_python(monkeypatch):
     said = "cause: Because opencv==5 has no usable wheels and you require opencv==5, we can conclude"
     text = str(problems.from_output(said, 1, Path("lab"), Path("log")))
     assert "on Windows ARM64" in text and "x86-64 installer" in text
-
-
-def test_uv_of_this_set_up_on_a_package_for_another_machine(tmp_path):
-    """What it says today: a wheel of another system, of another Python, a source without wheels, none at all."""
-    for name in ("basalt-2.0-py3-none-win_arm64.whl", "slate-2.0-cp39-cp39-any.whl", "gneiss-2.0.tar.gz"):
-        (tmp_path / name).write_bytes(b"")
-    command = [sys.executable, "-m", "uv", "pip", "install", "--python", sys.executable, "--no-index", "--dry-run"]
-    for name in ("basalt", "slate", "gneiss", "granite"):
-        more = ["--find-links", str(tmp_path), "--only-binary", ":all:", f"{name}==2.0"]
-        done = subprocess.run([*command, *more], capture_output=True, encoding="utf-8")
-        error = problems.from_output(done.stdout + done.stderr, done.returncode, Path("lab"), Path("log"))
-        assert isinstance(error, problems.NoWheelError) and f" {name}==2.0 for Python" in str(error)
 
 
 def test_installer_ended_by_a_signal():

@@ -1,5 +1,6 @@
 """A calibration as a file, in place of a pinhole, and from painted pictures of another camera."""
 
+import json
 from dataclasses import replace
 
 import cv2
@@ -33,6 +34,21 @@ def test_saved_and_loaded_is_the_same_and_opencv_reads_it(calibration, tmp_path)
     assert np.array_equal(file.getNode("camera_matrix").mat(), calibration.K)
     assert np.array_equal(file.getNode("distortion_coefficients").mat().ravel(), calibration.distortion)
     assert (file.getNode("image_width").real(), file.getNode("image_height").real()) == SIZE
+
+
+def test_where_the_camera_stands_is_kept_too_and_files_of_before_have_none(calibration, tmp_path):
+    stands = np.linalg.inv(bench_camera()[1])
+    path = replace(calibration, T_base_cam=stands).save(tmp_path / "camera.yml")
+    np.testing.assert_allclose(Calibration.load(path).T_base_cam, stands, atol=1e-12)
+    before = json.loads(path.read_text(encoding="utf-8"))
+    details = json.loads("".join(before["details"]))
+    del details["T_base_cam"]
+    path.write_text(json.dumps(before | {"details": [json.dumps(details)]}), encoding="utf-8")
+    assert Calibration.load(path).T_base_cam is None
+    details["T_base_cam"] = (2 * stands).tolist()
+    path.write_text(json.dumps(before | {"details": [json.dumps(details)]}), encoding="utf-8")
+    with pytest.raises(CalibrationError, match="damaged"):
+        Calibration.load(path)
 
 
 def test_another_size_and_what_is_no_size_are_refused(calibration, tmp_path):

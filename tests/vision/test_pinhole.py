@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import CalibrationError, ImageError, InputError
 from ir50p_lab.vision import Pinhole
 from ir50p_lab.vision.rendering import look_at, pose
 
@@ -31,6 +31,22 @@ def test_undistorted_points_come_back(lens):
     criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 200, 1e-14)
     theirs = cv2.undistortPointsIter(xy[:, None], K, camera.distortion, None, None, criteria)[:, 0]
     assert np.abs(flat - theirs).max() < 1e-8
+
+
+def test_a_straightened_picture_shows_what_a_lens_that_does_not_bend_shows():
+    bends, T = Pinhole(K, LENSES[4]), np.eye(4)
+    places = np.array([[x, y, 1.0] for x in (-0.3, 0.0, 0.3) for y in (-0.2, 0.0, 0.2)])
+    picture = np.zeros((480, 640, 3), np.uint8)
+    for x, y in bends.project(T, places):
+        cv2.circle(picture, (round(x), round(y)), 4, (255, 255, 255), -1)
+    straight = bends.straighten(picture)[:, :, 0]
+    for x, y in Pinhole(K).project(T, places).round().astype(int):
+        rows, columns = np.nonzero(straight[y - 12 : y + 13, x - 12 : x + 13] > 127)
+        assert np.hypot(rows.mean() - 12, columns.mean() - 12) < 1.5
+    with pytest.raises(CalibrationError, match="640x480, not 320x240"):
+        bends.straighten(picture[::2, ::2])
+    with pytest.raises(ImageError):
+        bends.straighten(picture[:, :, 0])
 
 
 def test_rays_point_at_what_is_projected():

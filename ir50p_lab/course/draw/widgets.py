@@ -18,6 +18,7 @@ import time
 import traceback
 import warnings
 import weakref
+from pathlib import Path
 from typing import ClassVar
 
 import ipywidgets as widgets
@@ -145,7 +146,7 @@ class LivePanel(widgets.VBox):
             print(text, file=said)
         text = html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
         if self.error is not None:
-            text += alarm(_explain(self.error))
+            text += alarm(explain(self.error))
         self.status.value = text
         self.updates += 1
 
@@ -178,8 +179,9 @@ class LivePanel(widgets.VBox):
                 close_all(old)
 
 
-def _explain(error):
-    """The error in one line, with the line of `update` it came from."""
-    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != __file__]
+def explain(error):
+    """The error in one line, with the line of the caller's function it came from."""
+    ours = str(Path(__file__).parent)
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if not frame.filename.startswith(ours)]
     where = f" (line {frames[0].lineno} in {frames[0].name})" if frames else ""
     return f"{type(error).__name__}: {error}{where}"

@@ -21,28 +21,31 @@ _ENDINGS = {"calibration": ".toml", "model": ".model", "camera": ".yml"}
 _RENDERED = {"bench": "rendered pictures", "bench_id": "rendered", "arm": "", "simulated": "true"}
 
 
-def save_result(kind, value, errors=None, measured_on=None):
+def save_result(kind, value, more=None, measured_on=None):
     """Keep a result with its origin; later notebooks take the newest. One line says what was kept.
 
         save_result("model", identify(recording), recording)
         save_result("model", theta, errors, recording)    # your own
+        save_result("camera", calibration, T_base_cam)
 
     Args:
         kind: 'calibration' (of potentiometers), 'model' (what `identify` or `output_error` returns, or your own theta
-        (3, 20) in PWM counts) or 'camera' (what `calibrate` returns). errors: standard errors of your own theta
-        (3, 20): inf where the data do not tell, nan where it was not fitted. measured_on: the open bench, or the
-        Recording, that it is from, the third argument where there are no errors; None: rendered pictures of a camera,
-        the simulated arm of your own theta.
+        (3, 20) in PWM counts) or 'camera' (what `calibrate` returns). more: standard errors of your own theta
+        (3, 20): inf where the data do not tell, nan where it was not fitted; of a camera T_base_cam (4, 4), where it
+        stands. measured_on: the open bench, or the Recording, that it is from, the third argument where there is no
+        `more`; None: rendered pictures of a camera, the simulated arm of your own theta.
 
     From a board without an id nothing is kept; the line says so. Raises InputError for another kind, a theta or errors
-    of another shape, and if it cannot be written.
+    of another shape, for a T_base_cam that is no rigid transform, and if it cannot be written.
     """
     _check(kind)
-    if hasattr(errors, "header") or hasattr(errors, "bench_id"):
-        errors, measured_on = measured_on, errors
+    if hasattr(more, "header") or hasattr(more, "bench_id"):
+        more, measured_on = measured_on, more
+    if kind == "camera" and more is not None:
+        value = _standing(value, more)
     if kind == "model" and not hasattr(value, "residuals"):
         measured_on = measured_on or SimulatedBench(record_to=False)
-        value = _own_model(*((value.theta, value.stderr) if hasattr(value, "stderr") else (value, errors)))
+        value = _own_model(*((value.theta, value.stderr) if hasattr(value, "stderr") else (value, more)))
     head = _origin(measured_on, kind)
     if head.get("bench_id", "none") == "none":
         print("Not kept: nobody knows which bench this is from. python3 -m ir50p_lab bench-test gives a board its id")
@@ -175,6 +178,13 @@ def _own_model(theta, errors):
     unknown = {"condition": np.full(3, np.nan), "sigma": np.full(3, np.nan), "residuals": np.zeros((0, 3))}
     said = {"columns": columns, "unidentifiable": (), "warnings": (), "method": "your own"}
     return Estimate(theta=theta, stderr=stderr, covariance=spread, **unknown, **said)
+
+
+def _standing(camera, T_base_cam):
+    """The Calibration of a camera that stands there."""
+    from ir50p_lab.vision.arguments import rigid
+
+    return dataclasses.replace(camera, T_base_cam=rigid("T_base_cam", T_base_cam))
 
 
 def _write_model(model, path):

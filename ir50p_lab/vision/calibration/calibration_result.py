@@ -61,6 +61,7 @@ class Calibration:
     board          Checkerboard; None where the points were given
     model          lens coefficients that were estimated, such as ("k1", "k2")                              tuple
     sigma          standard deviation of a corner in x or y, from the residuals                             px
+    T_base_cam     where it stands: takes camera to base coordinates; None: unknown                         (4, 4)
     ============== ======================================================================================== =========
     """
 
@@ -76,6 +77,7 @@ class Calibration:
     board: Checkerboard | None = field(default_factory=Checkerboard)
     model: tuple = ()
     sigma: float = np.nan
+    T_base_cam: np.ndarray | None = field(default=None, repr=False)
 
     @property
     def pinhole(self):
@@ -97,6 +99,10 @@ class Calibration:
         if name in NAMES:
             return self.values[name]
         raise AttributeError(f"Calibration has no {name!r}")
+
+    def straighten(self, image):
+        """A picture of this camera without distortion; see `Pinhole.straighten`."""
+        return self.pinhole.straighten(image)
 
     def save(self, path):
         """Write a JSON file, in which cv2.FileStorage (and OpenCV's samples) find the camera. Returns the path."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ir50p_lab.errors import CalibrationError
-from ir50p_lab.vision.arguments import check_picture_size, picture_size
+from ir50p_lab.vision.arguments import check_picture_size, picture_size, rigid
 from ir50p_lab.vision.calibration.board import Checkerboard
 from ir50p_lab.vision.calibration.reject_reasons import Reason, Rejected
 
@@ -53,7 +53,9 @@ def load(calibration_class, view_class, path, size=None):
             "rejected": tuple(Rejected(**one | {"reason": Reason(one["reason"])}) for one in found["rejected"]),
         }
         tuples = {name: tuple(found[name]) for name in ("model", "warnings", "size")}
+        stands = found.get("T_base_cam")  # files of before have none
         arrays = {name: _array(found[name]) for name in ("K", "distortion", "covariance")}
+        arrays["T_base_cam"] = stands and rigid("T_base_cam", stands)
         calibration = calibration_class(**found | changed | tuples | arrays)
         calibration.pinhole  # noqa: B018 - refuses numbers that are no camera
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:

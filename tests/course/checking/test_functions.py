@@ -91,8 +91,8 @@ def test_a_function_that_fails_says_how_and_for_what(capsys):
 def test_the_stub_and_functions_to_come(capsys):
     give("rot_z", "def rot_z(angle):\n    ...\n    return np.eye(3)")
     assert "not written yet" in said(capsys)
-    give("homography", "def homography(pixels):\n    pass")
-    assert "notebook 17" in said(capsys)
+    give("find_and_reach", "def find_and_reach(rgb):\n    pass")
+    assert "notebook 18" in said(capsys)
 
 
 def test_what_stands_in_the_cell_comes_along_and_nothing_else(capsys):

@@ -111,7 +111,12 @@ def test_a_camera_of_rendered_pictures_serves_simulated_arms_only(capsys):
     stderr = dict.fromkeys(NAMES, 0.1)
     camera = Calibration(K=K, distortion=np.zeros(5), rms=0.1, size=(640, 480), stderr=stderr)
     save_result("camera", camera)
-    assert load_result("camera", simulated(7)).fx == 700
+    assert load_result("camera", simulated(7)).fx == 700 and load_result("camera", simulated(7)).T_base_cam is None
+    stands = np.diag([1.0, -1, -1, 1])
+    save_result("camera", camera, stands)
+    np.testing.assert_array_equal(load_result("camera", simulated(7)).T_base_cam, stands)
+    with pytest.raises(InputError, match="T_base_cam is no rigid"):
+        save_result("camera", camera, 2 * stands)
     with pytest.raises(NotMeasuredError, match="17_camera"):
         load_result("camera", real_bench())
 

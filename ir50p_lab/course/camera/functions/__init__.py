@@ -1,0 +1,1 @@
+"""Functions of notebook 17, with their checks."""
