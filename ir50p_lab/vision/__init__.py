@@ -22,6 +22,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "ball.colour": ["RED", "Colour", "learn_colour"],
         "pinhole": ["Pinhole"],
         "rendering": ["render_scene"],
+        "reaching.budget": ["error_budget"],
         "reaching.moving": ["Mover"],
         "reaching.plan": ["plan", "reach_pose", "work_area"],
         "reaching.reach": ["Reacher", "reach"],

@@ -8,48 +8,28 @@ import numpy as np
 from ir50p_lab.course.camera.functions.pixel_to_plane import pixel_to_plane
 from ir50p_lab.course.checking.calling import call_or_fail
 from ir50p_lab.course.checking.task import Failed, Task, sentences, text_of, words
-from ir50p_lab.course.images.functions.circle_votes import circle_votes
 from ir50p_lab.course.images.functions.hue_mask import hue_mask
+from ir50p_lab.course.images.notebook_functions import edges_of, strongest, with_neighbours
 from ir50p_lab.course.kinematics.functions.reach import reach
 from ir50p_lab.modelling import IR50P, forward_kinematics
 
 _EARLIER = ("hue_mask", "circle_votes", "pixel_to_plane", "reach", "inverse_kinematics", "frames", "forward_kinematics")
 _NEAR = 0.004  # m: a pixel is 1 mm on the table, and the best place may be two pixels beside the middle
-_WOOD, _RED, _GREEN = (176, 148, 112), (200, 30, 40), (40, 160, 70)
+_WOOD, _RED, _GREEN, _PINK = (176, 148, 112), (200, 30, 40), (40, 160, 70), (200, 30, 110)
 _SAYS = sentences("find_and_reach", __file__)
-
-
-def edges_of(mask):
-    """Points (n, 2) px, (x, y), on the rim of a mask, and unit vectors (n, 2) into it."""
-    smooth = mask.astype(float)
-    for axis in (0, 1, 0, 1):
-        smooth = (np.roll(smooth, 1, axis) + 2 * smooth + np.roll(smooth, -1, axis)) / 4
-    down, right = np.gradient(smooth)
-    slope = np.hypot(right, down)
-    rows, columns = np.nonzero(slope > 0.2)
-    inwards = np.column_stack([right[rows, columns], down[rows, columns]]) / slope[rows, columns, None]
-    return np.column_stack([columns, rows]), inwards
-
-
-def with_neighbours(votes):
-    """Votes (h, w), those of the eight neighbours added to each place."""
-    tall = votes + np.roll(votes, 1, 0) + np.roll(votes, -1, 0)
-    return tall + np.roll(tall, 1, 1) + np.roll(tall, -1, 1)
 
 
 def find_and_reach(rgb, q_now, *, K, T_base_cam, l, limits, hue, tolerance, radii, ball_radius, above):
     """The pose (3,) rad with the tip `above` m over the ball in a straightened picture, or None."""
     mask = hue_mask(rgb, hue, tolerance)
-    points, inwards = edges_of(mask)
+    edges = edges_of(mask)
     best = 0.5
     pixel = None
     for radius in radii:
-        votes = with_neighbours(circle_votes(points, inwards, radius, mask.shape))
-        share = votes.max() / (2 * np.pi * radius)
+        share, middle = strongest(edges, radius, mask.shape)
         if share > best:
             best = share
-            row, column = np.unravel_index(np.argmax(votes), votes.shape)
-            pixel = column, row
+            pixel = middle
     if pixel is None:
         return None
     place = pixel_to_plane(K, T_base_cam, pixel, ball_radius)
@@ -92,10 +72,11 @@ _WIDE = np.array([[-3.1] * 3, [3.1] * 3])
 
 def _trials():
     """(key of the sentence, picture, what is known otherwise, q_now, pixel of the ball or None)."""
-    yield "ball", _picture(_disc(220, 80, 24)), {}, _START, (220, 80)
+    yield "ball", _picture(_disc(250, 80, 24)), {}, _START, (250, 80)
     yield "ball", _picture(_disc(97, 150, 24), _BAR), {}, _START, (97, 150)
     for radius in (19, 21, 25, 28):
         yield "radius", _picture(_disc(120, 130, radius)), {}, _START, (120, 130)
+    yield "radius", _picture(_disc(120, 130, 14)), {"radii": [13, 14, 15]}, _START, (120, 130)
     yield "nothing", _picture(), {}, _START, None
     yield "bar", _picture(_BAR), {}, _START, None
     yield "dot", _picture(_disc(120, 100, 4)), {}, _START, None
@@ -104,6 +85,7 @@ def _trials():
     yield "two", _picture(_disc(80, 150, 19), _disc(230, 150, 28, share=0.75)), {}, _START, (80, 150)
     yield "two", _picture(_disc(80, 150, 19, share=0.75), _disc(230, 150, 28)), {}, _START, (230, 150)
     yield "hue", _picture(_disc(97, 150, 24, _GREEN), _disc(220, 80, 24)), {"hue": 2.35}, _START, (97, 150)
+    yield "tolerance", _picture(_disc(97, 150, 24, _PINK)), {"tolerance": 0.55}, _START, (97, 150)
     yield "K", _picture(_disc(200, 150, 24)), {"K": _K * [[1.3, 1, 1.1], [1, 1.2, 1], [1, 1, 1]]}, _START, (200, 150)
     yield "above", _picture(_disc(120, 130, 24)), {"above": 0.1}, _START, (120, 130)
     yield "height", _picture(_disc(60, 190, 24)), {"ball_radius": 0.08}, _START, (60, 190)
@@ -148,8 +130,8 @@ def _judge(key, answer, known, q_now, pixel):
 TASK = Task(
     "find_and_reach",
     reference=find_and_reach,
-    solution_text=text_of(edges_of, with_neighbours, find_and_reach),
-    given=text_of(edges_of, with_neighbours) + "\n\n\n",
+    solution_text=text_of(edges_of, with_neighbours, strongest, find_and_reach),
+    given=text_of(edges_of, with_neighbours, strongest) + "\n\n\n",
     leans_on=_EARLIER,
     trial=tried,
     **words("find_and_reach", __file__),
