@@ -75,7 +75,7 @@ def _keep(source, wanted, remark):
         return _show("right", wanted.name, f"right, but it could not be kept: {error}")
     more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
     more += f" Your finished {wanted.function} was put aside, into my_robot/old: check it again last." if whole else ""
-    kind = "class" if wanted.trial else "function"
+    kind = "class" if isinstance(wanted.reference, type) else "function"
     text = f"right, and yours: from now on my_robot.{wanted.function} is this {kind}.{more} {remark}".rstrip()
     return _show("right", wanted.name, text, _beside(source, wanted))
 

@@ -8,13 +8,13 @@ _ARRIVED = 1.5  # s after which a followed ball has been caught up with
 
 
 def looks_figure(tips, goal, lens, names=("one look", "two looks")):
-    """Tips (n, looks, 3) m about their goal (3,): as the lens at (3,) m sees them, and along its line of sight. LabFigure."""
+    """Tips (n, 2, 3) m about their goal (3,) m: as the lens (3,) m sees them, and along its line of sight. LabFigure."""
     line = (goal - lens) / np.linalg.norm(goal - lens)
     side = np.cross(line, (0, 0, 1)) / np.hypot(*line[:2])
     up = np.cross(side, line)
     figure, seen, along = subplots(9.6, 4.2, cols=2, note="simulated arms, rendered pictures")
     for ax, axes in ((seen, (side, up)), (along, (line, side))):
-        off = 1000 * (tips - goal) @ np.transpose(axes)  # (n, looks, 2) mm
+        off = 1000 * (tips - goal) @ np.transpose(axes)  # (n, 2, 2) mm
         for one in off:
             ax.plot(*one.T, color=COLOURS["grey"], lw=0.8)
         for k, (name, colour) in enumerate(zip(names, ("orange", "blue"), strict=True)):
@@ -33,7 +33,8 @@ def follow_figure(logs, simulated):
     """Followed balls: the table from above for the first FollowLog, how far each tip is ahead. Returns: LabFigure."""
     import pandas as pd
 
-    figure, above, time = subplots(9.5, 4.0, cols=2, width_ratios=(1, 1.6), note=None if not simulated else "rendered pictures, simulated arm")
+    note = "rendered pictures, simulated arm" if simulated else "real arm"
+    figure, above, time = subplots(9.5, 4.0, cols=2, width_ratios=(1, 1.6), note=note)
     above.plot(*(1e3 * logs[0].ball.T), color="#C8202D", label="ball, as seen")
     settled = logs[0].t > _ARRIVED
     above.plot(*(1e3 * logs[0].tip[settled, :2].T), ".", ms=2, color=COLOURS["blue"], label="tip")

@@ -115,7 +115,7 @@ def _judge(key, answer, known, q_now, pixel):
     place, turned = (
         pixel_to_plane(known["K"], known["T_base_cam"], one, known["ball_radius"]) for one in (pixel, pixel[::-1])
     )
-    goal, tip = place + [0, 0, known["above"]], forward_kinematics(IR50P, np.asarray(answer, dtype=float))
+    goal, tip = place + np.array([0, 0, known["above"]]), forward_kinematics(IR50P, np.asarray(answer, dtype=float))
     if np.allclose(answer, goal, atol=_NEAR) or np.allclose(answer, place, atol=_NEAR):
         raise Failed(_SAYS["place"])
     if not np.linalg.norm(tip - goal) < _NEAR:
