@@ -8,7 +8,7 @@ _ARRIVED = 1.5  # s after which a followed ball has been caught up with
 
 
 def looks_figure(tips, goal, lens, names=("one look", "two looks")):
-    """Tips (n, 2, 3) m about their goal (3,) m: as the lens (3,) m sees them, and along its line of sight. LabFigure."""
+    """Tips (n, 2, 3) m about their goal (3,) m: as the lens (3,) m sees them, and along its line. LabFigure."""
     line = (goal - lens) / np.linalg.norm(goal - lens)
     side = np.cross(line, (0, 0, 1)) / np.hypot(*line[:2])
     up = np.cross(side, line)
