@@ -23,14 +23,14 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "simulation": 456,
     "bench": 2380,
     "identification": 1479,
-    "vision": 2340,
-    "course": 8375,  # without the next two
-    "course/publishing": 468,
+    "vision": 2299,
+    "course": 8622,  # without the next two
+    "course/publishing": 469,
     "course/grading": 0,
     "launcher": 575,
-    "root": 268,
+    "root": 272,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_329, 20_105, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_540, 19_728, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -111,7 +111,7 @@ def reads_the_ball(page, truth):
         page.wait_for_timeout(500)  # where messages come between cells only, two cells at once see one picture
         number, x, y, radius, *shape = json.loads(re.search(r"\[\d.*?\]", run(page, 1, READ))[0])
         assert shape == [480, 640, 3]
-        assert np.hypot(x - truth[number, 0], y - truth[number, 1]) < 1.5 and abs(radius - truth[number, 2]) < 1.5
+        assert np.hypot(x - truth[number, 0], y - truth[number, 1]) < 1 and abs(radius - truth[number, 2]) < 1
 
 
 def circles_lie_on_what_was_searched(page, truth):

@@ -33,6 +33,7 @@ IN_NOTEBOOK = {  # functions that stay in their notebook, and the room in which 
     **dict.fromkeys(("circle", "motor_law", "once_round"), "at_the_bench"),
     **dict.fromkeys(("carry", "cancel", "model", "pushes", "into", "planned"), "torque"),
     "nearest": "reaching",
+    "best_circle": "images",
 }
 _at = {}  # stage of each function that this session works on
 
