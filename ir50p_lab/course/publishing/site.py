@@ -30,7 +30,7 @@ _WHEN_NEEDED = [*browser_tab.WHEN_NEEDED, "micropip", "ssl"]
 #: What 00 does without: SciPy comes behind it; no widget of the classic notebook, no secure connection from Python.
 _LEFT_OUT = {"ir50p-lab": "scipy", "ipywidgets": "widgetsnbextension", "ssl": "openssl"}
 _WIDGETS = ("anywidget", "@jupyter-widgets/jupyterlab-manager")  # extensions of the page
-_TO_NOTEBOOK = r"\[(?P<title>[^\]]*)\]\((?P<file>\w+)\.ipynb[^)]*\)"
+_TO_NOTEBOOK = r"\[(?P<title>[^\[\]\n]*)\]\((?P<file>\w+)\.ipynb[^)]*\)"
 _FIRST = "notebooks/index.html?path=notebooks/00_start_here.ipynb"
 _TO_FIRST = f'<meta http-equiv="refresh" content="0; url=./{_FIRST}">'
 _RUNTIME = "pyodide.js pyodide.mjs pyodide.asm.wasm python_stdlib.zip".split()
