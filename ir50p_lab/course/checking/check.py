@@ -33,11 +33,8 @@ def check(name, answer=...):
         return check_here(name, answer)
     if not is_function(str(name)):
         return check_number(name, answer)
-    try:
-        wanted = task(name)
-        work_at(name)
-    except InputError as error:
-        return _show("open", name, str(error))
+    wanted = task(name)
+    work_at(name)
     if answer is ...:
         return _show("open", name, f"not written yet: {wanted.returns}")
     try:
@@ -75,7 +72,7 @@ def _keep(source, wanted, remark):
         return _show("right", wanted.name, f"right, but it could not be kept: {error}")
     more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
     more += f" Your finished {wanted.function} was put aside, into my_robot/old: check it again last." if whole else ""
-    kind = "class" if wanted.trial else "function"
+    kind = "class" if isinstance(wanted.reference, type) else "function"
     text = f"right, and yours: from now on my_robot.{wanted.function} is this {kind}.{more} {remark}".rstrip()
     return _show("right", wanted.name, text, _beside(source, wanted))
 

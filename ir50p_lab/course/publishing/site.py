@@ -30,7 +30,7 @@ _WHEN_NEEDED = [*browser_tab.WHEN_NEEDED, "micropip", "ssl"]
 #: What 00 does without: SciPy comes behind it; no widget of the classic notebook, no secure connection from Python.
 _LEFT_OUT = {"ir50p-lab": "scipy", "ipywidgets": "widgetsnbextension", "ssl": "openssl"}
 _WIDGETS = ("anywidget", "@jupyter-widgets/jupyterlab-manager")  # extensions of the page
-_NEXT = r"(?<=Next\*\*: )\[(?P<title>[^\]]*)\]\((?P<file>[^)]*)\)"
+_TO_NOTEBOOK = r"\[(?P<title>[^\[\]\n]*)\]\((?P<file>\w+)\.ipynb[^)]*\)"
 _FIRST = "notebooks/index.html?path=notebooks/00_start_here.ipynb"
 _TO_FIRST = f'<meta http-equiv="refresh" content="0; url=./{_FIRST}">'
 _RUNTIME = "pyodide.js pyodide.mjs pyodide.asm.wasm python_stdlib.zip".split()
@@ -130,12 +130,12 @@ def _contents(folder):
         target.parent.mkdir(parents=True, exist_ok=True)
         (shutil.copytree if source.is_dir() else shutil.copy)(source, target)
     for page in (folder / "notebooks").glob("*.ipynb"):
-        page.write_text(re.sub(_NEXT, _only_here, page.read_text(encoding="utf-8")), encoding="utf-8")
+        page.write_text(re.sub(_TO_NOTEBOOK, _only_here, page.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def _only_here(link):
-    """A link to the next notebook, or what it says where the tab has not got that one."""
-    return link[0] if link["file"][:2] in NOTEBOOKS else f"{link['title']}, which runs on your own machine"
+    """A link to a notebook, or what it says where the tab has not got that one."""
+    return link[0] if link["file"][:2] in NOTEBOOKS else f"{link['title']} (on your own machine)"
 
 
 def main():
