@@ -24,13 +24,13 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "bench": 2387,
     "identification": 1479,
     "vision": 2150,
-    "course": 8545,  # without the next two
+    "course": 8628,  # without the next two
     "course/publishing": 466,
     "course/grading": 0,
     "launcher": 575,
     "root": 268,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_314, 19_865, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_397, 19_918, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
