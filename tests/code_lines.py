@@ -21,16 +21,16 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "signals": 380,
     "controllers": 318,
     "simulation": 456,
-    "bench": 2387,
+    "bench": 2380,
     "identification": 1479,
     "vision": 2150,
-    "course": 8628,  # without the next two
+    "course": 8597,  # without the next two
     "course/publishing": 466,
     "course/grading": 0,
     "launcher": 575,
     "root": 268,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_397, 19_918, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_359, 19_917, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -40,7 +40,12 @@ FINDERS = {"ir50p_lab.course.checking.tasks", "ir50p_lab.course.checking.numbers
 #: No command and no page: what stands without the course.
 SUBJECTS = {"modelling", "signals", "controllers", "simulation", "bench", "identification", "vision"}
 #: What else a subject builds on: the motion that its model is fitted to; frames and Jacobian of the arm's links; 11's circle.
-SUBJECTS_TOO = {"torque": {"fitting"}, "dynamics": {"kinematics"}, "at_the_bench": {"kinematics", "motion"}}
+SUBJECTS_TOO = {
+    "camera": {"images"},
+    "torque": {"fitting"},
+    "dynamics": {"kinematics"},
+    "at_the_bench": {"kinematics", "motion"},
+}
 
 
 def modules():

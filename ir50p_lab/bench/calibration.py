@@ -15,6 +15,7 @@ _HEAD = "# counts = zero + slope q: counts of the 10-bit converter, slope in cou
 _JOINTS = ("joint1", "joint2", "joint3")
 _FULL = 1023.0
 _STEP_BACK = 300.0  # counts: if they fall by more from one angle to the next, the potentiometer has wrapped round
+_FAR = 5.0  # a point that lies as many times the scatter of the others off the line was misread
 
 
 @dataclass(frozen=True)
@@ -156,8 +157,8 @@ def fit_calibration(q, counts, *, arm="", source="measured"):
         arm: Arm or its name, saved with it. source: kept with it (who measured, when).
 
     Returns: JointCalibration with standard errors, points and residuals; its
-    `remarks` name what looks wrong: a bow that a line cannot follow (F test against a cubic), a point that lies far
-    off, few points, a narrow range, a reading at the end of the track.
+    `remarks` name what looks wrong: a point that lies far off, few points, a narrow range, a reading at the end of the
+    track.
     Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
     that does not change or does not follow its angle (a potentiometer that wraps, cables of two joints swapped).
     """
@@ -199,22 +200,10 @@ def _remarks(q, counts, slope, zero):
     if counts.min() <= 2 or counts.max() >= _FULL - 2:
         yield "a reading lies at the end of the converter's range: the potentiometer may turn on without it"
     if len(q) < 6:
-        yield f"only {len(q)} points: a bow or a misread point would not show; measure 10"
+        yield f"only {len(q)} points: a misread one would not show; measure 10"
         return
-    line, bend = _rest(q, counts, 1), _rest(q, counts, 3)
-    without = [_rest(np.delete(q, k), np.delete(counts, k), 1) for k in range(len(q))]
-    far = int(np.argmin(without))
-    # What a freer fit takes away, over what it leaves: beyond these noise comes once in a thousand, and in a hundred.
-    if line > (1 + 60 / (len(q) - 3)) * without[far]:
-        off = np.degrees(abs(q[far] - (counts[far] - zero) / slope))
+    off = q - (counts - zero) / slope
+    far = np.abs(off).argmax()
+    if abs(off[far]) > _FAR * np.delete(off, far).std():
         point = f"point {far + 1} (q = {np.degrees(q[far]):.1f} deg, {counts[far]:.1f} counts)"
-        yield f"{point} lies {off:.1f} deg off the line, far more than the others: misread?"
-    elif line > (1 + 22 / (len(q) - 4)) * bend:
-        bow = np.degrees(np.sqrt((line - bend) / len(q)))
-        yield f"the line leaves a bow of {bow:.1f} deg rms that is no noise: angles there are that much off"
-
-
-def _rest(q, counts, degree):
-    """Sum of squares that a polynomial leaves, rad^2; of rounding at least."""
-    x = (counts - counts.mean()) / np.ptp(counts)
-    return max(float(((q - np.polyval(np.polyfit(x, q, degree), x)) ** 2).sum()), 1e-11)
+        yield f"{point} lies {np.degrees(abs(off[far])):.1f} deg off the line, far more than the others: misread?"

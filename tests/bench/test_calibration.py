@@ -49,14 +49,6 @@ def test_good_data_give_no_remarks():
     assert sum(bool(fit_calibration(*experiment(seed)).remarks) for seed in range(50)) <= 5
 
 
-def test_a_bow_is_seen():
-    q, counts = experiment()
-    x = (counts[:, 1] - 512) / 200
-    q[:, 1] += 0.1 * x**2
-    remarks = fit_calibration(q, counts).remarks
-    assert "joint 2: the line leaves a bow" in remarks[-1] and all("joint 2" in text for text in remarks)
-
-
 def test_a_misread_point_is_named():
     q, counts = experiment()
     q[4, 0] += 0.1

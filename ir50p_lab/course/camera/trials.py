@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.course.camera.board_poses import board_poses
-from ir50p_lab.course.camera.eyes_tmp import edges_of, with_neighbours
+from ir50p_lab.course.images import edges_of, with_neighbours
 from ir50p_lab.vision import Checkerboard, calibrate_corners
 
 

@@ -75,17 +75,11 @@ def _of_results(task):
             yield Mistake(_result(task, _swapped(i, j)), f"{parts[i]} and {part} have changed places")
         yield Mistake(_result(task, lambda y, j=j: y[..., j]), f"it returns {part} alone")
         yield Mistake(_result(task, lambda y, j=j: np.delete(y, j, axis=-1)), f"{part} is missing")
-    if len(shape) > 1 and task.compare is None:
-        yield from _of_rows(task, shape)
-
-
-def _of_rows(task, shape):
-    for i in range(min(shape[0], _MANY)):
+    for i in range(min(shape[0], _MANY)) if len(shape) > 1 and task.compare is None else ():
         for says, change in _changes("of_parts") if len(shape) == 2 else ():
             yield Mistake(_result(task, _on_rows(_on_part(i, change))), says.format(f"row {i + 1}"))
         for j in range(i):
-            change = _on_rows(_swapped(i, j))
-            yield Mistake(_result(task, change), f"rows {j + 1} and {i + 1} have changed places")
+            yield Mistake(_result(task, _on_rows(_swapped(i, j))), f"rows {j + 1} and {i + 1} have changed places")
 
 
 def _of_order(task):

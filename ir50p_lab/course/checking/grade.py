@@ -45,7 +45,7 @@ class _Trial:
     example: int | None = None
 
     def __post_init__(self):
-        good = [_agrees(self.task, *both) for both in zip(self.returned, self.expected, strict=True)]
+        good = [self.task.agrees(*both) for both in zip(self.returned, self.expected, strict=True)]
         self.bad = [k for k, fine in enumerate(good) if not fine]
 
     def of(self, result):
@@ -229,13 +229,6 @@ def _beside(function):
     }
 
 
-def _agrees(task, returned, expected):
-    try:
-        return not isinstance(returned, Failed) and task.agrees(returned, expected)
-    except (TypeError, ValueError):
-        return False
-
-
 def _is_mistake(task, mistake, case, returned):
     """Tell whether a mistake gives the same answer, or stops as this one does."""
     try:
@@ -243,7 +236,7 @@ def _is_mistake(task, mistake, case, returned):
             wrong = mistake.function(*copy.deepcopy(case))
     except Exception as error:
         return isinstance(returned, Failed) and type(returned.__cause__) is type(error)
-    return _agrees(task, returned, wrong)
+    return task.agrees(returned, wrong)
 
 
 # -------------------------------------------------------------------------------------------------------- numbers

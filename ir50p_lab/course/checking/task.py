@@ -88,8 +88,11 @@ def wrong_one(function, changes):
 
 def mistakes(function):
     """The mistakes in the table of a function."""
-    text = sections(function.__name__, inspect.getfile(function)).get("mistakes", "")
-    return tuple(Mistake(wrong_one(function, changes), says) for says, changes in changes_of(text))
+    return _made(function, sections(function.__name__, inspect.getfile(function)).get("mistakes", ""))
+
+
+def _made(function, table):
+    return tuple(Mistake(wrong_one(function, changes), says) for says, changes in changes_of(table))
 
 
 def nth_result(function, result):
@@ -170,11 +173,14 @@ class Task:
         )
 
     def agrees(self, returned, expected):
-        """Tell whether what came back is what was expected. Raises TypeError, ValueError for what is no answer."""
-        if not self.results:
-            return _agrees(returned, expected, self.compare, self.tolerance)
-        each = zip(returned, expected, self._of_each(self.compare), self._of_each(self.tolerance), strict=True)
-        return all(_agrees(*one) for one in each)
+        """Tell whether what came back is what was expected; what is no answer is not."""
+        try:
+            if not self.results:
+                return _is_same(returned, expected, self.compare, self.tolerance)
+            each = zip(returned, expected, self._of_each(self.compare), self._of_each(self.tolerance), strict=True)
+            return all(_is_same(*one) for one in each)
+        except (TypeError, ValueError):
+            return False
 
     def expected(self, case, returned):
         """The right answer to a case: of several (`rights`) the one that came back, result by result."""
@@ -183,7 +189,7 @@ class Task:
             also = other(*case)
             try:
                 each = zip(returned, right, also, self._of_each(self.tolerance), strict=True)
-                right = tuple(b if _agrees(one, b, None, within) else a for one, a, b, within in each)
+                right = tuple(b if _is_same(one, b, None, within) else a for one, a, b, within in each)
             except (TypeError, ValueError):  # what came back is no answer
                 return right
         return right
@@ -211,18 +217,21 @@ def words(name, beside):
 
 
 def notebook_tasks(beside, **asked):
-    """Tasks of functions that stay in their notebook: {name: Task}; NAME=(right, cases, what it returns, options).
+    """Tasks of functions that stay in their notebook: {name: Task}.
 
-    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module, each below its name.
+    asked: NAME=(right, cases, what it returns, a dict of other options if there are any).
+
+    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module, each below its name;
+    below "NAME: mistakes" the table of mistakes, made out of the course's own.
     """
-    texts = sections("notebook_functions", beside)
-    return {
-        name: Task(name, asks, right, solution_text=texts[name], cases=cases, **options)
-        for name, (right, cases, asks, options) in asked.items()
-    }
+    texts, tasks = sections("notebook_functions", beside), {}
+    for name, (right, cases, asks, *options) in asked.items():
+        known = _made(right, texts.get(f"{name}: mistakes", ""))
+        tasks[name] = Task(name, asks, right, texts[name], cases, mistakes=known, **dict(*options))
+    return tasks
 
 
-def _agrees(returned, expected, same, tolerance):
+def _is_same(returned, expected, same, tolerance):
     if same is not None:
         return same(returned, expected)
     returned, expected = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)

@@ -30,8 +30,8 @@ class PictureView(widgets.VBox):
     Raises InputError for what is no picture.
     """
 
-    def __init__(self, picture, on_click=None, alt="A picture", source=STAMP):
-        self._on_click, self._circles = on_click, []
+    def __init__(self, picture, on_click=None, alt="A picture", source=STAMP, circles=()):
+        self._on_click, self._circles = on_click, list(circles)
         self.canvas = Canvas(description=alt)
         self.status = widgets.HTML(html.escape(source), layout={"min_height": "1.5em"})
         super().__init__([self.canvas, self.status])

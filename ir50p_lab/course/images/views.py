@@ -1,62 +1,71 @@
-"""The panel of notebook 16: a picture to click; rendered pictures say that they are."""
+"""Figures of notebook 16: pictures, a picture as numbers, edge pixels that vote, a bench whose ball is moved."""
 
-import html
-
-import ipywidgets as widgets
 import numpy as np
 
-from ir50p_lab.course.draw.canvas import Canvas
-from ir50p_lab.course.draw.painter import encode_png
-from ir50p_lab.course.draw.pictures import STAMP
-from ir50p_lab.course.draw.style import alarm
-from ir50p_lab.errors import LabError
-from ir50p_lab.vision import RED, find_balls, learn_colour
+from ir50p_lab.course.draw.pictures import STAMP, pictures_figure, show_picture
+from ir50p_lab.course.draw.style import COLOURS, subplots
+from ir50p_lab.course.lab_book.data_file import data_file
+from ir50p_lab.errors import InputError
+from ir50p_lab.vision.image import load_image
+
+__all__ = ["bench_pictures", "bench_with_ball", "numbers_figure", "pictures_figure", "votes_figure"]
+
+_FILES = {"red": "bench_16", "blue": "bench_16_blue"}
+_EVERY = 7  # one edge pixel in so many is drawn
 
 
-class ClickColour(widgets.VBox):
-    """A picture to click: the colour there is learnt, its mask shown beside the picture, the balls of it outlined.
+def bench_pictures(colour):
+    """The bench with a "red" or a "blue" ball, from files: in full light, in dim light, without the ball.
 
-    Attributes: image_box (Canvas), status; colour, the Colour in use; balls, what find_balls says to it.
-    `click(x, y)` does from Python what the mouse does.
+    Returns: three pictures (480, 640, 3). Raises InputError for another colour.
     """
+    if colour not in _FILES:
+        raise InputError(f'bench_pictures({colour!r}): there is a bench in "red" and one in "blue"')
+    return tuple(load_image(data_file(f"{_FILES[colour]}{which}.jpg")) for which in ("", "_dim", "_empty"))
 
-    def __init__(self, image):
-        self._image = image
-        self.status = widgets.HTML()
-        self.image_box = Canvas(
-            description="Left a picture to click, right the mask of the colour that was clicked",
-            layout={"width": "900px", "max_width": "100%"},
+
+def numbers_figure(grey, x, y):
+    """Nine rows and columns of a grey picture (h, w) from pixel (x, y) on, as numbers (Figure 3.1): LabFigure."""
+    part = np.round(grey[y : y + 9, x : x + 9]).astype(int)
+    figure, ax = subplots(4.6, 4.4, note=STAMP)
+    show_picture(ax, part, extent=(x - 0.5, x + 8.5, y + 8.5, y - 0.5))
+    for (row, column), level in np.ndenumerate(part):
+        ink = "white" if level < 128 else "black"
+        ax.text(x + column, y + row, level, ha="center", va="center", color=ink, fontsize=8)
+    ax.set(xlabel="x [px]", ylabel="y [px]")
+    return figure
+
+
+def votes_figure(picture, edges, radius, votes):
+    """Edge pixels with a line one radius inwards, and beside them the votes that they give. Returns: LabFigure.
+
+    picture (h, w, 3); edges: points (n, 2) and unit vectors inwards (n, 2); radius, px; votes (h, w).
+    Raises InputError where there is no edge.
+    """
+    points, inwards = edges
+    if not len(points):
+        raise InputError(
+            "there is no edge pixel: the mask is all True, or all False. Is the tolerance 0, or far too large?"
         )
-        super().__init__([self.image_box, self.status])
-        self._use(RED)
-        self.image_box.on_click(self._clicked)
+    figure, left, right = subplots(9.6, 4.2, cols=2, note=STAMP)
+    show_picture(left, picture, "Each edge pixel points one radius inwards")
+    ends = points + radius * inwards
+    for here, there in zip(points[::_EVERY], ends[::_EVERY], strict=True):
+        left.plot(*np.transpose([here, there]), color="white", linewidth=0.9)
+    left.plot(*points[::_EVERY].T, ".", color=COLOURS["sky"], markersize=3)
+    left.plot(*ends[::_EVERY].T, ".", color=COLOURS["amber"], markersize=5)
+    show_picture(right, 255 * np.sqrt(votes / votes.max()), f"The votes: {votes.max()} at the brightest")
+    low, high = points.min(axis=0) - 10, points.max(axis=0) + 10
+    for ax in (left, right):
+        ax.set(xlim=(low[0], high[0]), ylim=(high[1], low[1]), xlabel="x [px]", ylabel="y [px]")
+    return figure
 
-    def click(self, x, y):
-        """Learn the colour at pixel (x, y) and look for balls of it; a refusal appears in the status line."""
-        try:
-            self._use(learn_colour(self._image, (x, y)))
-        except LabError as error:
-            self.status.value = alarm(str(error))
 
-    def _clicked(self, right, up):
-        height, width = self._image.shape[:2]
-        x = right * 2 * width
-        self.click((x if x < width else x - width) - 0.5, (1 - up) * height - 0.5)
+def bench_with_ball(arm, x, y):
+    """A small picture (240, 320, 3) of the bench with a red ball at (x, y) m, red tape, and the arm turned away."""
+    from ir50p_lab.vision.rendering import Patch, SceneBall, arm_sticks, bench_camera, bench_scene, render_scene
 
-    def _use(self, colour):
-        import cv2
-
-        self.colour, self.balls = colour, find_balls(self._image, colour)
-        left, mask = self._image.copy(), colour.mask(self._image)
-        for ball in self.balls:
-            centre, radius = (round(16 * ball.x), round(16 * ball.y)), round(16 * ball.radius)
-            cv2.circle(left, centre, radius, (255, 255, 255), 3, cv2.LINE_AA, 4)
-            cv2.circle(left, centre, radius, (0, 114, 178), 1, cv2.LINE_AA, 4)
-        right = cv2.cvtColor(mask, cv2.COLOR_GRAY2RGB)
-        right[[0, 1, -2, -1]] = right[:, [0, 1, -2, -1]] = 153  # a frame: it may be white on a white page
-        self.image_box.value = encode_png(np.hstack([left, right]))
-        found = f"{len(self.balls)} ball{'s' * (len(self.balls) != 1)}" if self.balls else self.balls.reason
-        self.status.value = html.escape(
-            f"hue {colour.hue:.0f} ± {colour.tolerance:.0f} degrees, saturation from {colour.saturation:.2f}: {found} "
-            f"({STAMP})"
-        )
+    tape = Patch(position=(0.50, -0.05), size=(0.14, 0.02), angle=0.5)
+    small, ball = bench_camera()[0].scaled((320, 240)), SceneBall(position=(x, y, 0.03))
+    scene = bench_scene(ball, pinhole=small, patches=(tape,), arm=arm_sticks([2.6, 0.5, -1.0], arm))
+    return render_scene(scene, seed=0)[0]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ir50p_lab.course.checking.calling import call_or_fail
-from ir50p_lab.course.checking.task import Failed, Mistake, notebook_tasks
+from ir50p_lab.course.checking.task import Failed, notebook_tasks
 from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.kinematics.functions.jacobian import jacobian
 from ir50p_lab.course.kinematics.functions.reach import reach
@@ -71,26 +71,9 @@ def _pushes():
     return [*_ways(), stretched]
 
 
-def _all_at_full_speed(q, direction, l, fastest):
-    return fastest * np.sum(np.abs(direction @ _of_tip(q, l)))
-
-
-def _of_length(q, direction, l, fastest):
-    return fastest / np.linalg.norm(np.linalg.solve(_of_tip(q, l), direction))
-
-
-def _torques_added(q, direction, l, strongest):
-    return strongest / np.sum(np.abs(_of_tip(q, l).T @ direction))
-
-
-_FULL = "all joints at full speed carry the tip another way: which joint speeds does this way ask for?"
-_LENGTH = "the length of all joint speeds is limited in it: asked is that none of the three is too fast"
-_SUM = "the torques are added up: each motor has a limit of its own"
-
 TASKS = notebook_tasks(
     __file__,
     along=(along, None, "a list: for each place its pose, or None", {"trial": _walked}),
-    pace=(pace, _ways, "the greatest speed of the tip that way, m/s",
-          {"mistakes": (Mistake(_all_at_full_speed, _FULL), Mistake(_of_length, _LENGTH))}),
-    push=(push, _pushes, "the greatest force of the tip that way, N", {"mistakes": (Mistake(_torques_added, _SUM),)}),
-)  # fmt: skip
+    pace=(pace, _ways, "the greatest speed of the tip that way, m/s"),
+    push=(push, _pushes, "the greatest force of the tip that way, N"),
+)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, notebook_tasks
+from ir50p_lab.course.checking.task import notebook_tasks
 from ir50p_lab.modelling import forward_dynamics, inverse_dynamics, load_arm
 from ir50p_lab.modelling.friction import friction_torque as friction
 
@@ -36,12 +36,10 @@ def motor_factors(N, kt, ke, Ra, V):
 
 def counts_for(q, qd, qdd):
     """The counts (3,) that a motion takes."""
-    return _counts(inverse_dynamics(load_arm().without_friction(), q, qd, qdd), friction(load_arm(), qd), qd)
-
-
-def _counts(torque, rubbing, qd):
-    motor = load_arm().actuators
-    return (torque + rubbing + motor.back_emf_damping * qd) / motor.gain
+    arm = load_arm()
+    torque = inverse_dynamics(arm.without_friction(), q, qd, qdd)
+    rubbing, brake = friction(arm, qd), arm.actuators.back_emf_damping * qd
+    return (torque + rubbing + brake) / arm.actuators.gain
 
 
 # ------------------------------------------------------------------------------------------------------ tried on
@@ -74,69 +72,11 @@ def _motions():
     return [tuple(row) for row in np.random.default_rng(63).uniform(-1, 1, (6, 3, 3))]
 
 
-# ------------------------------------------------------------------------------------------------- typical mistakes
-def _lets_it_back(speed, taken):
-    return speed - np.sign(speed) * taken
-
-
-def _one_sided(speed, taken):
-    return speed - taken
-
-
-def _angles_stand(t, x):
-    return np.concatenate([np.zeros(3), falling(t, x)[3:]])
-
-
-def _angles_for_speeds(t, x):
-    return np.concatenate([x[:3], falling(t, x)[3:]])
-
-
-def _one_gear(N, kt, ke, Ra, V):
-    return N * kt * V / (255 * Ra), N * kt * ke / Ra
-
-
-def _of_volts(N, kt, ke, Ra, V):
-    return N * kt / Ra, N**2 * kt * ke / Ra
-
-
-def _no_friction(q, qd, qdd):
-    return counts_for(q, qd, qdd) - friction(load_arm(), qd) / load_arm().actuators.gain
-
-
-def _friction_helps(q, qd, qdd):
-    return counts_for(q, qd, qdd) - 2 * friction(load_arm(), qd) / load_arm().actuators.gain
-
-
-def _no_brake(q, qd, qdd):
-    motor = load_arm().actuators
-    return counts_for(q, qd, qdd) - motor.back_emf_damping * qd / motor.gain
-
-
-def _neither(q, qd, qdd):
-    return _no_friction(q, qd, qdd) + _no_brake(q, qd, qdd) - counts_for(q, qd, qdd)
-
-
-_BACK = "a slow joint comes out of it moving backwards: can friction take more speed than there is?"
-_SIDE = "forwards it brakes, backwards it pushes along: friction works against the speed, whichever way"
-_STAND = "the angles do not change in it: at which rates do they, when the arm moves?"
-_ANGLES = "the angles change at the rate of the angles in it: which part of x are speeds?"
-_TWICE = "the gear comes into the damping twice: the motor turns faster, and its brake is made stronger"
-_PER_VOLT = "the gain is that of one volt: how many volts is one count?"
-_RUBS = "friction costs counts, too"
-_HELPS = "friction helps in it: friction_alone has its minus already"
-_TURNS = "a motor that turns brakes itself: solve motor_torque for the counts, speed and all"
-_BOTH = "friction and the motor's own brake cost counts, too"
-
 TASKS = notebook_tasks(
     __file__,
-    falling=(falling, _states, "six rates: of three angles and of three speeds", {
-        "mistakes": (Mistake(_angles_stand, _STAND), Mistake(_angles_for_speeds, _ANGLES)), "tolerance": 0.02}),
+    falling=(falling, _states, "six rates: of three angles and of three speeds", {"tolerance": 0.02}),
     halve=(halve, _limits, "the shortest time that is enough, s", {"tolerance": 0.01, "unit": "s"}),
-    slide=(slide, _slides, "the speed that is left, rad/s", {
-        "mistakes": (Mistake(_lets_it_back, _BACK), Mistake(_one_sided, _SIDE))}),
-    motor_factors=(motor_factors, _motors, "gain and damping, two numbers", {
-        "results": ("gain", "damping"), "mistakes": (Mistake(_one_gear, _TWICE), Mistake(_of_volts, _PER_VOLT))}),
-    counts_for=(counts_for, _motions, "the counts, three numbers", {
-        "mistakes": (Mistake(_no_friction, _RUBS), Mistake(_friction_helps, _HELPS), Mistake(_no_brake, _TURNS),
-                  Mistake(_neither, _BOTH)), "tolerance": 0.05, "unit": "counts"}),
-)  # fmt: skip
+    slide=(slide, _slides, "the speed that is left, rad/s"),
+    motor_factors=(motor_factors, _motors, "gain and damping, two numbers", {"results": ("gain", "damping")}),
+    counts_for=(counts_for, _motions, "the counts, three numbers", {"tolerance": 0.05, "unit": "counts"}),
+)

@@ -35,6 +35,7 @@ IN_NOTEBOOK = {  # functions that stay in their notebook, and the room in which 
     "rule": "loops",
     **dict.fromkeys(("circle", "motor_law", "once_round"), "at_the_bench"),
     **dict.fromkeys(("carry", "cancel", "model", "pushes", "into", "planned"), "torque"),
+    "best_circle": "images",
 }
 _at = {}  # stage of each function that this session works on
 

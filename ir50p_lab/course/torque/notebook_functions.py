@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, notebook_tasks
+from ir50p_lab.course.checking.task import notebook_tasks
 from ir50p_lab.course.fitting.functions.regressor import regressor
 from ir50p_lab.modelling import gravity, inverse_dynamics, load_arm
 
@@ -42,6 +42,26 @@ def _rows(*shape):
     return np.random.default_rng(140).uniform(-1, 1, (5, *shape))
 
 
+def _poses():
+    return [(q,) for q in _rows(3)]
+
+
+def _swings():
+    return [(x, 3 * v) for x, v in zip(_rows(2), _rows(), strict=True)]
+
+
+def _motions():
+    return [tuple(row) for row in _rows(3, 3)]
+
+
+def _plans():
+    return [(*one[:2], one[2:]) for one in _rows(5, 3)]
+
+
+def _plans_alone():
+    return [(made_up, plan) for plan in _rows(3, 3)]
+
+
 def _theta_states():
     return [(10 * theta, *states) for theta, states in zip(_rows(3, 20), _rows(4, 3), strict=True)]
 
@@ -51,55 +71,12 @@ def made_up(q, qd, qdd, direction):
     return 3 * np.cos(q) + 40 * qd + 5 * qdd + 11 * direction
 
 
-# ------------------------------------------------------------------------------------------------- typical mistakes
-def _in_torques(q):
-    return gravity(load_arm(), q)
-
-
-def _other_sign(x, v):
-    return v - 9.81 * np.sin(x[0]) - 0.2 * x[1]
-
-
-def _no_brake(x, v):
-    return v + 9.81 * np.sin(x[0])
-
-
-def _no_weight(q, qd, qdd):
-    return model(q, qd, qdd) - gravity(load_arm(), q)
-
-
-def _no_speeds(q, qd, qdd):
-    return model(q, 0 * qd, qdd)
-
-
-def _one_row(theta, q, qd, qdd, direction):
-    return regressor(q, qd, qdd, direction) @ theta[0]
-
-
-def _measured(q, qd, plan):
-    return q, qd, np.sign(qd)
-
-
-_TORQUES = "that is the torque, in N m: a motor takes counts"
-_SIGNS = "the pendulum is pushed twice by what should be cancelled: the signs are the other way round"
-_BRAKE = "its brake, 0.2 times the speed, is not cancelled"
-_WEIGHT = "at rest it carries nothing: the weight is missing"
-_SPEEDS = "what the speeds of the joints do to each other is missing"
-_ROW = "all joints use the first row of theta: each has a row of its own"
-_BOTH = "speed and direction are still the measured ones"
-
 TASKS = notebook_tasks(
     __file__,
-    carry=(carry, lambda: [(q,) for q in _rows(3)], "the counts, three numbers", {
-        "mistakes": (Mistake(_in_torques, _TORQUES),), "tolerance": 1e-3, "unit": "counts"}),
-    cancel=(cancel, lambda: [(x, 3 * v) for x, v in zip(_rows(2), _rows(), strict=True)], "the push, one number", {
-        "mistakes": (Mistake(_other_sign, _SIGNS), Mistake(_no_brake, _BRAKE))}),
-    model=(model, lambda: [tuple(row) for row in _rows(3, 3)], "the torques, three numbers", {
-        "mistakes": (Mistake(_no_weight, _WEIGHT), Mistake(_no_speeds, _SPEEDS)), "tolerance": 1e-3, "unit": "N m"}),
-    pushes=(pushes, _theta_states, "the counts, three numbers", {
-        "mistakes": (Mistake(_one_row, _ROW),), "unit": "counts"}),
-    into=(into, lambda: [(*one[:2], one[2:]) for one in _rows(5, 3)], "place, speed and direction, three vectors", {
-        "results": ("place", "speed", "direction"), "mistakes": (Mistake(_measured, _BOTH),)}),
-    planned=(planned, lambda: [(made_up, plan) for plan in _rows(3, 3)], "the counts, three numbers", {
-        "unit": "counts"}),
-)  # fmt: skip
+    carry=(carry, _poses, "the counts, three numbers", {"tolerance": 1e-3, "unit": "counts"}),
+    cancel=(cancel, _swings, "the push, one number"),
+    model=(model, _motions, "the torques, three numbers", {"tolerance": 1e-3, "unit": "N m"}),
+    pushes=(pushes, _theta_states, "the counts, three numbers", {"unit": "counts"}),
+    into=(into, _plans, "place, speed and direction, three vectors", {"results": ("place", "speed", "direction")}),
+    planned=(planned, _plans_alone, "the counts, three numbers", {"unit": "counts"}),
+)

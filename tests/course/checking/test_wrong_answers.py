@@ -255,7 +255,7 @@ def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypa
         verdict = grading.grade(one, mistake.function)
         returned = [call(one, mistake.function, case) for case in cases]
         answers = {k: (case, returned[k], one.reference(*case)) for k, case in enumerate(cases)}
-        answers = {k: answer for k, answer in answers.items() if not grading._agrees(one, *answer[1:])}
+        answers = {k: answer for k, answer in answers.items() if not one.agrees(*answer[1:])}
         there = [k for k, case in enumerate(cases) if verdict.example.startswith(case_in_words(one, case) + "\n")]
         shown += bool(there)
         assert not there or any(k in answers for k in there)

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, changes_of, sections, sentences, task_of, wrong_one
+from ir50p_lab.course.checking.task import sentences, task_of
 from ir50p_lab.course.kinematics.functions import LENGTHS
 from ir50p_lab.course.kinematics.functions.forward_kinematics import forward_kinematics
 
@@ -99,32 +99,8 @@ def _whole_turns(poses):
     for number, joint in np.argwhere(np.abs(rows) > np.pi + 1e-9):
         angle = rows[number, joint]
         same = np.angle(np.exp(1j * angle))
-        return _SAYS["whole turn"].format(_JOINTS[joint], number + 1, angle, same)
+        return _SAYS["whole turn"].format(("waist", "shoulder", "elbow")[joint], number + 1, angle, same)
     return ""
-
-
-_JOINTS = ("waist", "shoulder", "elbow")
-_WHERE = {  # some of the poses: in words, and their test
-    "": "True",
-    " in the poses with their back to the place": "side < 0",
-    " where x < 0": "x < 0",
-    " where y < 0": "y < 0",
-    " wherever it is beyond a quarter turn": "abs(waist) > np.pi / 2",
-    " with the elbow up": "elbow < 0",
-    " with the elbow down": "elbow > 0",
-}
-
-
-def _mistakes():
-    """The mistakes of the table; where a sentence leaves room for it, made in some of the poses only, too."""
-    for says, changes in changes_of(sections("inverse_kinematics", __file__)["mistakes"]):
-        if "{}" not in says:
-            yield Mistake(wrong_one(inverse_kinematics, changes), says)
-            continue
-        pose, bent = changes[0].split("  ->  ")
-        for words, where in _WHERE.items():
-            some = f"{pose} -> {bent} if {where} else {pose}"
-            yield Mistake(wrong_one(inverse_kinematics, [some]), says.format(words))
 
 
 TASK = task_of(
@@ -133,7 +109,6 @@ TASK = task_of(
     leans_on=("forward_kinematics", "frames", "dh_matrix", "rot_z"),
     compare=same_poses,
     entry_names=("q1", "q2", "q3"),
-    mistakes=tuple(_mistakes()),
     symptom=_symptom,
     check_form=_whole_turns,
 )

@@ -1,0 +1,1 @@
+"""What a student writes in notebook 16, with its checks."""
