@@ -18,9 +18,10 @@ class SightView(widgets.VBox):
     def __init__(self, picture, pose_for, hand, pixel):
         self._pose_for, self._hand, self._pixel = pose_for, hand, pixel
         self.picture = PictureView(picture, self._clicked, alt="The picture of the camera: a click chooses a pixel")
-        self.height = widgets.IntSlider(30, 0, 60, description="height [mm]")
+        self.height = widgets.IntSlider(30, 0, 60, description="height [mm]", style={"description_width": "initial"})
         self.height.observe(self._go, "value")
-        super().__init__([self.picture, self.height, hand])
+        seen = widgets.VBox([self.picture, self.height], layout={"width": "46%"})
+        super().__init__([widgets.HBox([seen, widgets.Box([hand], layout={"width": "54%"})])])
         self._go()
 
     def _clicked(self, x, y):

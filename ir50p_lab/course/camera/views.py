@@ -22,10 +22,10 @@ def grid_figure(picture, H, title="Lines 50 mm apart on the table"):
     return figure
 
 
-def circled(picture, circles, alt):
+def circled(picture, circles, alt, colour="white"):
     """A picture with circles (x, y, radius), px, over it: PictureView."""
     view = PictureView(picture, alt=alt)
-    view.circles = [(*circle, "white") for circle in circles]
+    view.circles = [(*circle, colour) for circle in circles]
     return view
 
 
