@@ -23,14 +23,14 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "simulation": 456,
     "bench": 2380,
     "identification": 1479,
-    "vision": 2150,
-    "course": 8597,  # without the next two
-    "course/publishing": 466,
+    "vision": 2346,
+    "course": 8585,  # without the next two
+    "course/publishing": 468,
     "course/grading": 0,
     "launcher": 575,
     "root": 268,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_359, 19_917, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_545, 19_868, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -7,8 +7,6 @@ import re
 import sys
 from pathlib import Path
 
-import pytest
-
 PACKAGE = Path(__file__).parents[1] / "ir50p_lab"
 #: What each folder builds on, beside the files next to the folders; `launcher` is the standard library's and ours alone.
 MODELS = {"launcher", "modelling", "signals"}
@@ -88,19 +86,6 @@ def named_by(argument):
     if not isinstance(parts[0], ast.Constant):
         return "(?!)"
     return "".join(re.escape(part.value) if isinstance(part, ast.Constant) else r"[\w.]+" for part in parts)
-
-
-@pytest.mark.parametrize(
-    ("line", "found"),
-    [
-        ("importlib.import_module('p.a')", ["p.a"]),
-        ("importlib.import_module(f'p.{room}.b')", ["p.c.b", "p.d.b"]),
-        ("importlib.import_module(name)", []),
-    ],
-)
-def test_imports_by_importlib_are_seen(line, found):
-    trees = dict.fromkeys(["p.a", "p.c.b", "p.d.b", "p"])
-    assert list(imports(ast.parse(line), trees, {})) == found
 
 
 def test_no_import_circle():

@@ -11,7 +11,8 @@ __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submodules=["camera", "rendering"],
     submod_attrs={
-        "camera": ["Camera", "Frame", "PictureFolder", "Webcam", "open_camera"],
+        "camera": ["PictureFolder", "Webcam", "open_camera"],
+        "frame": ["Camera", "Frame"],
         "image": ["check_image", "is_rendered", "list_images", "load_image", "save_image", "to_grey"],
         "calibration.calibrate": ["calibrate", "calibrate_corners"],
         "calibration.board": ["Checkerboard"],

@@ -1,37 +1,18 @@
 """Cameras: a source of frames. A webcam is opened quietly, gives fresh pictures, and says when it is unplugged."""
 
-import contextlib
+import sys
 import time
-from collections import namedtuple
 
 import numpy as np
 
+from ir50p_lab.browser_tab import IN_BROWSER
 from ir50p_lab.errors import CameraError
 from ir50p_lab.home import setting
-from ir50p_lab.vision.image import check_image, is_rendered, list_images, load_image, save_image
+from ir50p_lab.vision.frame import Camera, Frame
+from ir50p_lab.vision.image import check_image, is_rendered, list_images, load_image
 
 _PATIENCE = 3.0  # s: if no picture comes for so long, the webcam counts as unplugged
 _AT_ONCE = 0.005  # s: if a picture comes sooner, it has waited in the driver, and is old
-
-
-class Frame(namedtuple("Frame", "image simulated source")):
-    """One picture: image (h, w, 3) uint8, red green blue; simulated: rendered, not photographed; source: its camera."""
-
-    def save(self, path):
-        """Write the picture to a file; a rendered one carries a mark (PNG and JPEG). Raises ImageError."""
-        save_image(path, self.image, rendered=self.simulated)
-
-
-class Camera(contextlib.AbstractContextManager):
-    """A source of pictures: `with open_camera() as camera: frame = camera.read()`. It has name, simulated, size."""
-
-    name, simulated, size = "camera", False, (0, 0)
-
-    def close(self):
-        """Release the camera; it gives no more pictures. To close it twice does no harm."""
-
-    def __exit__(self, *_):
-        self.close()
 
 
 class Webcam(Camera):
@@ -100,18 +81,30 @@ class PictureFolder(Camera):
 
 
 def open_camera(source=None, *, size=(640, 480)):
-    """Open a camera and say in one line which: a webcam by its number, or the pictures of a "folder:PATH".
+    """Open a camera and say in one line which.
 
-    source: default what IR50P_CAMERA says, else 0, the first webcam; size: (width, height) asked of a webcam.
+    source: a number, that webcam of this computer; "page", the camera of the browser that shows the notebook, live
+    below the cell and read in the next one; "folder:PATH", the pictures of a folder. Default: what IR50P_CAMERA says,
+    else "page" in a notebook and 0 in a script. size: (width, height) asked of a camera.
     Raises CameraError if there is no such webcam, ImageError for a folder without pictures.
     """
-    source = str((setting("IR50P_CAMERA") or 0) if source is None else source)
+    source = str((setting("IR50P_CAMERA") or _usual()) if source is None else source)
     if source.startswith("folder:"):
         camera = PictureFolder(source.removeprefix("folder:"))
     elif source.isdecimal():
         camera = Webcam(int(source), size=size)
+    elif source == "page":
+        from ir50p_lab.vision.page_camera import PageCamera
+
+        camera = PageCamera(size=size)
     else:
-        raise CameraError(f"no camera is called {source!r}: give the number of a webcam, or folder:PATH")
+        raise CameraError(f'no camera is called {source!r}: give the number of a webcam, "page", or folder:PATH')
     kind = "rendered" if camera.simulated else "photographs"
     print("Camera: {}, {}x{}, {}".format(camera.name, *camera.size, kind))
     return camera
+
+
+def _usual():
+    """What is opened if nobody says: in a notebook the page's camera, for its kernel may run where none is."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return "page" if IN_BROWSER or hasattr(shell, "kernel") else 0

@@ -77,7 +77,8 @@ def _bytes(path):
     except FileNotFoundError:
         raise ImageError(f"there is no file {path}: check the name and the folder (here is {Path.cwd()})") from None
     except (OSError, ValueError, TypeError) as error:  # no permission, a null byte in the name, not a path
-        raise ImageError(f"{path!s:.200} cannot be read ({error}): give the path of a picture file") from None
+        name = "this picture" if hasattr(path, "read") else f"{path!s:.200}"  # an open file has no name to tell
+        raise ImageError(f"{name} cannot be read ({error}): give the path of a picture file") from None
 
 
 def save_image(path, image, *, rendered=False, quality=95):

@@ -8,14 +8,12 @@ import sys
 
 import numpy as np
 import pytest
-from benches import CLOCKED, GAINS
+from benches import CLOCKED
 
 from ir50p_lab.bench import Recording, protocol
 from ir50p_lab.bench.rest import rest_pose
-from ir50p_lab.controllers import PID
 from ir50p_lab.errors import BenchError, InputError, PauseError
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals import hold
 
 REST = rest_pose(IR50P)
 PUSH = np.array([60.0, 0.0, 0.0])  # of joint 1, which does not know gravity
@@ -141,14 +139,6 @@ def test_a_period_longer_than_the_watchdog_allows_is_refused(rig):
     bench = rig.bench(period=0.2).open()
     with pytest.raises(InputError, match=r"give 0\.05 s at most"):
         next(bench.run(1))
-
-
-def test_time_that_is_a_counter_knows_no_pauses(tmp_path):
-    from benches import Simulated
-
-    bench = Simulated(tmp_path, REST).bench().open()
-    bench.follow(PID(**GAINS, limit_pwm=255), hold(REST), 0.1)
-    assert "watchdog_trips" not in bench.recording.header
 
 
 def test_with_cold_caches_all_is_compiled_before_the_clock_starts(tmp_path):

@@ -76,35 +76,6 @@ def test_a_full_disk_cuts_the_drive_and_says_so(tmp_path, monkeypatch):
     assert 5 < len(loaded) == len(bench.recording) - 1 < 100
 
 
-def test_a_compiled_run_stops_on_a_full_disk_too_and_keeps_what_fitted(tmp_path, monkeypatch):
-    from ir50p_lab.controllers import PID
-    from ir50p_lab.signals import hold
-
-    def write(file, data):
-        if os.fstat(file).st_size > 3000:
-            raise OSError(28, "No space left on device")
-        return real(file, data[:2000])
-
-    bench = Watched(record_to=tmp_path).open()
-    recorder = recorder_module.Recorder
-    real = os.write
-
-    def start(*args, **options):
-        made = recorder(*args, **options)
-        monkeypatch.setattr(recorder_module.os, "write", write)
-        return made
-
-    monkeypatch.setattr("ir50p_lab.bench.base.Recorder", start)
-    with pytest.raises(RecordingError, match="No space left"):
-        bench.follow(PID(kp=(100, 100, 100), limit_pwm=255), hold([0.1, 0.1, 0.1]), 1)
-    monkeypatch.setattr(recorder_module.os, "write", real)
-    assert bench.cuts >= 1
-    loaded = Recording.load(bench.recording.path)  # no warning: the file ends with a whole line
-    assert 20 < len(loaded) < 60
-    np.testing.assert_allclose(loaded.q, bench.recording.q[: len(loaded)], atol=1e-6)
-    bench.abort()
-
-
 @pytest.mark.skipif(
     sys.platform == "win32", reason="no limit of file sizes on Windows; the patched disk above stands in"
 )

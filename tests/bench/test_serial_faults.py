@@ -70,11 +70,6 @@ def test_port_that_does_not_open(monkeypatch, platform, number, text, expected):
         assert part in str(error.value)
 
 
-def test_port_that_is_not_there():
-    with pytest.raises(PortError, match=r"/dev/tty-not-there does not exist: ports on this computer"):
-        SerialBench("/dev/tty-not-there", arm=IR50P).open()
-
-
 def test_file_that_is_no_port(tmp_path):
     (tmp_path / "file").write_text("text")
     with pytest.raises(PortError, match="is it a serial port"):

@@ -7,7 +7,7 @@ from scipy.optimize import nnls
 
 from ir50p_lab.identification import fit, regressor
 from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES, OFFSETS, ONLY_THESIS
-from ir50p_lab.modelling import IR50P, mass_matrix
+from ir50p_lab.modelling import IR50P
 
 RIGID = [sorted(set(acts) & set(COLUMNS["rigid"])) for acts in ACTS_ON]
 BOUNDED = [k for k, name in enumerate(NAMES) if name not in (*OFFSETS, *ONLY_THESIS)]
@@ -69,14 +69,3 @@ def test_good_data_are_left_alone(seed):
     np.testing.assert_allclose(found.theta, plain.theta, rtol=1e-7, atol=1e-9)
     np.testing.assert_allclose(found.stderr, plain.stderr, rtol=1e-7)
     assert not any("at a bound" in text for text in found.warnings)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_its_mass_matrix_is_positive_definite(seed):
-    Phi, y = poor_data(seed, noise=60.0)
-    found = fit(Phi, y, method="bounded", rows="shared", l2=IR50P.l[1], columns="rigid")
-    indefinite = any("not positive definite" in text for text in found.warnings)
-    q = np.column_stack([np.zeros(4000), *np.random.default_rng(0).uniform(-np.pi, np.pi, (2, 4000))])
-    M = mass_matrix(found.theta, q)
-    eigenvalues = np.linalg.eigvalsh(M)
-    assert indefinite == (eigenvalues.min() <= 0), "what the fit says about M must be true"

@@ -8,7 +8,7 @@ from arms import random_arm
 from rounding_noise import NOISE
 from scipy.signal import butter, lfilter, sosfiltfilt
 
-from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.errors import InputError
 from ir50p_lab.identification import Estimate, fit, regressor
 from ir50p_lab.identification import least_squares as least_squares_of_any
 from ir50p_lab.identification.parameters import ACTS_ON, COLUMNS, NAMES
@@ -190,27 +190,6 @@ def test_summary_and_text():
 
 
 # refusals ----------------------------------------------------------------------------------------------------------
-
-
-def test_bad_data_are_refused():
-    Phi = regressor(*motion(16, n=200))
-    y = torque(Phi, IR50P.theta_pwm)
-    bad = y.copy()
-    bad[17, 2] = np.nan
-    with pytest.raises(InputError, match=r"y holds nan at index \(17, 2\)"):
-        fit(Phi, bad)
-    bad = Phi.copy()
-    bad[5, 1, 3] = np.inf
-    with pytest.raises(InputError, match=r"Phi holds inf at index \(5, 1, 3\)"):
-        fit(bad, y)
-    with pytest.raises(InputError, match="y has shape"):
-        fit(Phi, y[:-1])
-    with pytest.raises(InputError, match="Phi has shape"):
-        fit(Phi[:, :2], y)
-    with pytest.raises(IdentificationError, match="equations for 7 parameters"):
-        fit(Phi[:10], y[:10])
-    with pytest.raises(IdentificationError, match="no motion"):
-        fit(np.zeros_like(Phi), y)
 
 
 @pytest.mark.parametrize(

@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 
 from data.make_excitations import (
-    NOISE,
     SETTINGS,
-    make_excitations,
     save_excitations,
-    simulate_identification,
 )
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.course.torque.views import thesis_pid
-from ir50p_lab.errors import IdentificationError, InputError
-from ir50p_lab.home import setting
+from ir50p_lab.errors import InputError
 from ir50p_lab.identification import fit, identify, load_excitations, process, regressor, validate
 from ir50p_lab.identification.excitation import regressor_condition
 from ir50p_lab.modelling import IR50P
@@ -116,24 +112,6 @@ def test_motions_come_back_as_they_were(tmp_path):
         load_excitations(tmp_path / "none.json")
 
 
-def test_the_simulation_tells_what_the_run_will_be(records):
-    told = simulate_identification(MOTIONS["training"], IR50P, thesis_pid())
-    assert told.worth() > 0 and told.worth() == (told.fit - [90, 92, 93]).min()
-    np.testing.assert_allclose(told.spread, records[0].u.std(axis=0), rtol=0.2)
-    assert np.sqrt(np.mean((told.q[:2000] - records[0].q[:2000]) ** 2)) < 0.05
-    assert told.worth(room=1.0) == -np.inf and told.worth(height=1.0) == -np.inf
-    noisy = simulate_identification(MOTIONS["training"], IR50P, thesis_pid(), noise=20)
-    assert (noisy.fit < told.fit - 5).all()
-
-
-def test_the_same_seed_makes_the_same_motions():
-    options = {"candidates": 4, "kept": 1, "progress": False, "tries": 100, "harmonics": 3}
-    one, two = (make_excitations(seed=8, **options) for _ in range(2))
-    assert one == two and [*one] == ["plain", "training"]
-    with pytest.raises(IdentificationError, match="keep clear"):
-        make_excitations(seed=8, **options, margin=0.0, table=-1.0, max_joint_speed=2.5)
-
-
 @pytest.mark.parametrize(
     "options, words",
     [
@@ -152,13 +130,3 @@ def test_bad_arguments(options, words):
 def test_steps_that_a_score_could_not_repeat_are_refused(step):
     with pytest.raises(TypeError, match=step):
         identify(run("training", seconds=5), **{step: 2})
-
-
-if setting("IR50P_SLOW"):  # a minute
-
-    def test_the_search_of_today_finds_no_better_training_motion():
-        """Of 16 such searches the best was worth 1.4 % over the floor; the motion in the file, best of 200, 2.3 %."""
-        settled = simulate_identification(MOTIONS["training"], IR50P, thesis_pid(), noise=NOISE).worth()
-        made = make_excitations(candidates=8, kept=1, progress=False)["training"]
-        found = simulate_identification(made, IR50P, thesis_pid(), noise=NOISE).worth()
-        assert settled > 2 and found < settled + 0.5

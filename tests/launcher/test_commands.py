@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from mini_project import PROJECT, one_line
+from mini_project import one_line
 
 from ir50p_lab.launcher import commands, installer, inventory
 
@@ -169,10 +169,3 @@ def test_without_streams_as_under_pythonw(monkeypatch):
     installer._show("a line")
     monkeypatch.setattr(sys, "stdout", io.StringIO())  # has no reconfigure
     assert commands.main(["--help"]) == 0
-
-
-def test_the_launcher_imports_the_standard_library_only():
-    # -S leaves site-packages out, -I what a variable or the folder could add
-    code = "import sys; sys.path.insert(0, sys.argv[1]); import ir50p_lab.launcher.commands, ir50p_lab.home"
-    done = commands.subprocess.run([sys.executable, "-I", "-S", "-c", code, str(PROJECT)], capture_output=True)
-    assert done.returncode == 0, done.stderr

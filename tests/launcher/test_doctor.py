@@ -3,7 +3,6 @@
 import contextlib
 import io
 import platform
-import sys
 
 import pytest
 
@@ -133,16 +132,3 @@ def test_packages_of_a_lock_file(tmp_path):
         {"name": "pytest", "wanted": "0.1", "installed": pytest.__version__},
         {"name": "no-such-package", "wanted": "2.0", "installed": None},
     ]
-
-
-def test_serial_ports_as_pyserial_sees_them(monkeypatch):
-    from serial.tools import list_ports, list_ports_common
-
-    board = list_ports_common.ListPortInfo("/dev/ttyACM0")
-    board.vid, board.pid, board.description = 0x2341, 0x43, "Arduino Uno"
-    plain = list_ports_common.ListPortInfo("/dev/ttyS0")
-    monkeypatch.setattr(list_ports, "comports", lambda: [plain, board])
-    told = [[port[key] for key in ("device", "vid", "pid", "description")] for port in inventory.serial_ports()]
-    assert told == [["/dev/ttyACM0", 0x2341, 0x43, "Arduino Uno"], ["/dev/ttyS0", None, None, "n/a"]]
-    monkeypatch.setitem(sys.modules, "serial.tools", None)
-    assert inventory.serial_ports() is None

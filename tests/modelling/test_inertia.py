@@ -40,22 +40,6 @@ def test_textbook_formulae(make):
     assert list(solid.com) == ([L / 4, 0, 0] if make is cone else [0, 0, 0])
 
 
-@pytest.mark.parametrize(
-    ("solid", "sizes", "geom"),
-    [
-        (box, {"a": 0.3, "b": 0.2, "c": 0.1}, 'type="box" size="0.15 0.1 0.05"'),
-        (cylinder, {"R": 0.1, "L": 0.5}, 'type="cylinder" size="0.1 0.25" euler="0 90 0"'),
-    ],
-    ids=["box", "cylinder"],
-)
-def test_equal_to_mujocos_geometry(solid, sizes, geom):
-    mujoco = pytest.importorskip("mujoco")
-    xml = f'<mujoco><worldbody><body><freejoint/><geom mass="1.7" {geom}/></body></worldbody></mujoco>'
-    model = mujoco.MjModel.from_xml_string(xml)
-    ours = solid().body(1.7, **sizes)
-    assert np.allclose(sorted(np.diag(ours.inertia)), sorted(model.body_inertia[1]), rtol=1e-12)
-
-
 def test_steiner_agrees_with_the_kinetic_energy_of_points():
     rng = np.random.default_rng(2)
     points, masses = rng.normal(size=(20, 3)), rng.uniform(0.1, 1, 20)

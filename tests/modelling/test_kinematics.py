@@ -95,18 +95,6 @@ def test_branches_are_what_their_names_say():
     assert (s["back/up"] == s[2]).all() and (s[0] == s.q[0]).all()
 
 
-@pytest.mark.parametrize("arm", [IR50P, THESIS_A], ids=["IR50P", "A"])
-def test_up_is_above_the_line_for_front_branches_and_below_it_for_back_branches(arm):
-    p = forward_kinematics(arm, np.random.default_rng(2).uniform(-PI, PI, (5000, 3)))
-    s = inverse_kinematics(arm, p)
-    shoulder, elbow = np.array([0, 0, arm.l[0]]), frames(arm, s.q)[..., 2, :3, 3]
-    along = np.hypot(*np.moveaxis(p, -1, 0)[:2])  # distance of the tip from the column
-    heading = p[:, None, :2] / along[:, None, None]
-    line = (elbow[..., :2] * heading).sum(axis=-1) * ((p[:, 2] - shoulder[2]) / along)[:, None] + shoulder[2]
-    above = elbow[..., 2] > line  # at the same distance along the heading of the tip
-    assert (above == [True, False, False, True]).all()
-
-
 def test_frames_against_mujoco_and_closed_form():
     rng = np.random.default_rng(1)
     arm = random_arm(rng)

@@ -1,78 +1,122 @@
-"""No known mistake of the thesis is forgotten: each is named in a 'Thesis check' cell, with an assert below.
+"""A1 is a dictionary of every mistake of the thesis: `data/errata.csv` lists them, A1 has an entry for each.
 
-`errata.csv` lists those that notebooks meet so far: notebook, equation or place, what is wrong in a line, and words that
-name it if it has no number of its own: a regular expression for the text of the Thesis check or the code below it.
+The list: place (as it is named in the entry), slip, chapter, kind, the notebook that meets it (may be empty), and the
+heading of A1 under which its check stands.
 """
 
+import ast
+import builtins
 import csv
-import itertools
 import re
 from collections import Counter
-from pathlib import Path
 
+import index_of_equations as index
 import stripped
-from notebook_runner import NOTEBOOKS, REWRITTEN
+from notebook_runner import FOLDER, ROOT
+from test_structure import imported_names
 
-WIDEST_RANGE = 10  # "(1.101-1.110)" names ten equations; a wider range names none of them
+A1, A2 = FOLDER / "A1_errata.ipynb", FOLDER / "A2_further_on.ipynb"
+CELLS = stripped.read(A1).cells
+NUMBER, RIGHT = "reference or name", "looks wrong, is right"
+TO_COME = ("16", "18")  # their links come with the notebooks themselves
 
-
-def thesis_checks(path):
-    """Return (text from 'Thesis check' on, code below) of a notebook."""
-    found = []
-    cells = stripped.read(path).cells
-    for text, code in itertools.pairwise(cells):
-        if text.cell_type == "markdown" and "**Thesis check (" in text.source:
-            found.append((text.source[text.source.index("**Thesis check (") :], code))
-    return found
-
-
-def equations(text):
-    """Return the equation numbers in a text, such as 1.5, with narrow ranges written out."""
-    numbers = set(re.findall(r"(?<![\d.])\d\.\d+(?:\.\d+[a-z]?)?", text))
-    for chapter, first, last in re.findall(r"(\d)\.(\d+)\)?\s*[-\u2013]\s*\(?\1\.(\d+)(?![.\d])", text):
-        if int(first) < int(last) < int(first) + WIDEST_RANGE:
-            numbers |= {f"{chapter}.{i}" for i in range(int(first), int(last) + 1)}
-    return numbers
-
-
-def names(check, place, words):
-    text, code = check
-    return re.search(words, f"{text}\n{code.source}") is not None if words else place in equations(text)
-
-
-with Path(__file__).with_name("errata.csv").open(encoding="utf-8", newline="") as file:
+with (ROOT / "data" / "errata.csv").open(encoding="utf-8", newline="") as file:
     ERRATA = list(csv.DictReader(file))
 
 
-def test_every_mistake_is_checked(path):
-    checks = thesis_checks(path)
-    for mistake in ERRATA:
-        if path.name.startswith(mistake["notebook"]):
-            found = [code for text, code in checks if names((text, code), mistake["place"], mistake["words"])]
-            assert found, f"no Thesis check of {path.name} names {mistake['place']} ({mistake['mistake']})"
-            assert any(code.cell_type == "code" and re.search("assert|claim", code.source) for code in found)
+def entries():
+    """{heading: (its text, its code cells)} of A1, sections and entries."""
+    found, heading = {}, ""
+    for cell in CELLS:
+        if mark := re.match(r"##+ (.+)", cell.source):
+            heading = mark[1]
+        found.setdefault(heading, ([], []))[cell.cell_type == "code"].append(cell.source)
+    return {heading: ("\n".join(texts), codes) for heading, (texts, codes) in found.items()}
 
 
-def test_thesis_checks_run_and_assert(path):
-    checks = thesis_checks(path)
-    assert checks or path.name[:2] in (*REWRITTEN, "A2")  # theirs stand in A1
-    for text, code in checks:
-        assert code.cell_type == "code" and re.search("assert|claim", code.source), text.splitlines()[0]
+ENTRIES = entries()
+
+
+def plain(text):
+    """A text without what typesetting puts into it: $M_{112}$ is M112."""
+    return re.sub(r"[\\${}_^\s]", "", text)
+
+
+def test_every_slip_has_its_entry():
+    for slip in ERRATA:
+        (text, codes), place = ENTRIES[slip["check"]], slip["place"]
+        named = place.startswith("(") and place.strip("()") in index.equations(text)
+        assert named or plain(place) in plain(text), f"{slip['check']} does not name {place}"
+        assert any("claim(" in code for code in codes) or slip["kind"] == NUMBER or "*Experiment: " in text, place
 
 
 def test_the_list_is_complete():
-    """Every number once; the counts are those of the study of the thesis that the list comes from."""
-    counts = {"A1": 117, "16": 8, "18": 2}
-    assert Counter(mistake["notebook"] for mistake in ERRATA) == counts
-    assert set(counts) <= {path.name[:2] for path in NOTEBOOKS}
-    assert len({(mistake["notebook"], mistake["place"]) for mistake in ERRATA}) == len(ERRATA)
+    """Each place once; the counts are those of the study of the thesis, and of what was found since."""
+    assert len({slip["place"] for slip in ERRATA}) == len(ERRATA)
+    assert Counter(slip["chapter"] for slip in ERRATA) == {"1": 86, "2": 33, "3": 13, "4": 27}
+    assert {slip["kind"] for slip in ERRATA} == {
+        "equation", "index or sign", "number", "words", NUMBER, RIGHT
+    }  # fmt: skip
+    named = {slip["check"] for slip in ERRATA}
+    assert named == {heading for heading, (text, _) in ENTRIES.items() if text.startswith("### ")} | {
+        "Looks wrong and is right", "Only a number or a name"
+    }  # fmt: skip
+
+
+def test_entries_are_short():
+    for heading, (text, codes) in ENTRIES.items():
+        if not text.startswith("### "):
+            continue
+        assert "| printed | how would you notice? | right |" in text, heading
+        for code in codes:
+            lines = [line for line in code.splitlines() if line and not re.match("from|import", line)]
+            assert len(lines) <= 6, f"{heading}: {code}"
+
+
+def test_sections_run_by_themselves():
+    """No cell of an appendix reads a name that only another section has made; A2's first cell is for all."""
+    for path in (A1, A2):
+        first, bound = None, set()
+        for cell in stripped.read(path).cells:
+            if cell.source.startswith("## "):
+                first, bound = (bound if first is None else first), set()
+            if cell.cell_type == "code":
+                nodes = list(ast.walk(ast.parse(cell.source)))
+                names = [node for node in nodes if isinstance(node, ast.Name)]
+                bound |= imported_names(cell.source) | {n.id for n in names if not isinstance(n.ctx, ast.Load)}
+                bound |= {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
+                bound |= {node.arg for node in nodes if isinstance(node, ast.arg)}
+                assert {n.id for n in names} <= bound | (first or set()) | set(dir(builtins)), cell.source
+
+
+def test_links_lead_both_ways():
+    """A notebook that meets a slip links to A1's section, and what A1 calls an experiment meets that slip."""
+    for number in sorted({slip["notebook"] for slip in ERRATA} - {"", *TO_COME}):
+        (path,) = FOLDER.glob(f"{number}_*.ipynb")
+        assert "A1_errata.ipynb#" in path.read_text(encoding="utf-8"), f"{path.name} has no link to A1"
+    for heading, (text, _) in ENTRIES.items():
+        for number in re.findall(r"\*Experiment: \[(\w\w)\]", text):
+            met = {slip["notebook"] for slip in ERRATA if slip["check"] == heading}
+            assert number in met or number == "A2", f"{heading}: {number} meets none of it"
+
+
+def test_links_name_headings_that_are_there():
+    headings = {path.name: headings_of(path) for path in FOLDER.glob("[0-9A][0-9]_*.ipynb")}
+    for path in FOLDER.glob("[0-9A][0-9]_*.ipynb"):
+        for target, anchor in re.findall(r"\]\(([^)#]+\.ipynb)#([^)]+)\)", path.read_text(encoding="utf-8")):
+            assert anchor in headings[target], f"{path.name} links to {target}#{anchor}"
+
+
+def headings_of(path):
+    """The headings of a notebook as a link names them: blanks as hyphens."""
+    texts = [cell.source for cell in stripped.read(path).cells if cell.cell_type == "markdown"]
+    return {line.lstrip("# ").replace(" ", "-") for text in texts for line in text.splitlines() if line[:1] == "#"}
 
 
 def test_equation_numbers_are_read():
-    assert equations("(1.5)") == {"1.5"}
-    assert equations("(1.101-1.103), (1.7) and (1.11)-(1.13)") == {
+    assert index.equations("(1.5)") == {"1.5"}
+    assert index.equations("(1.101)-(1.103), (1.7) and (1.11) to (1.13)") == {
         "1.101", "1.102", "1.103", "1.7", "1.11", "1.12", "1.13"
     }  # fmt: skip
-    assert "1.80" not in equations("(1.75-1.99)")
-    assert equations("1.5.3c") == {"1.5.3c"}
-    assert "1.1" not in equations("1.11")
+    assert "1.80" not in index.equations("(1.75)-(1.99)")
+    assert "1.1" not in index.equations("(1.11)")

@@ -62,33 +62,6 @@ def test_failures_are_kept_apart(expected):
     assert failure.index == 1 and failure.case["kp"] == -1 and failure.error == "ValueError: negative gain on purpose"
 
 
-def test_goes_on_where_it_was_interrupted(tmp_path, expected):
-    path, calls = tmp_path / "sweep.jsonl", []
-
-    def interrupted(case):
-        calls.append(case["kp"])
-        if len(calls) == 4:
-            raise KeyboardInterrupt
-        return stiffness_error(case)
-
-    interrupted.__qualname__ = "same"
-    with pytest.raises(KeyboardInterrupt):
-        sweep(interrupted, CASES, executor=Inline(), progress=False, save_to=path)
-    done = len(path.read_text().splitlines())
-    assert 0 < done < len(CASES)
-
-    def again(case):
-        calls.append(case["kp"])
-        return stiffness_error(case)
-
-    again.__qualname__ = "same"
-    calls.clear()
-    result = sweep(again, CASES, executor=Inline(), progress=False, save_to=path)
-    assert result.results == expected and len(calls) == len(CASES) - done
-    calls.clear()
-    assert sweep(again, CASES, executor=Inline(), progress=False, save_to=path).results == expected and not calls
-
-
 class Inline:
     """An executor that computes at once in this thread, so that an interrupt comes at a known place."""
 

@@ -9,6 +9,7 @@ from board_pictures import look, paint, project
 
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.vision import Checkerboard, Reason, board_points, calibrate, find_checkerboard
+from ir50p_lab.vision.calibration.corners import _check_whole
 from ir50p_lab.vision.calibration.reject_reasons import NotUsable
 
 BOARD = Checkerboard()
@@ -143,6 +144,15 @@ def test_another_board_is_counted(pattern, told):
     reason, detail = reason_for(grey(look(0.7, 0.3, 1.0), pattern=pattern), told)
     assert reason is Reason.WRONG_BOARD
     assert f"{pattern[0]}x{pattern[1]} inner corners" in detail
+
+
+@pytest.mark.parametrize(("shown", "same"), [((9, 6), True), ((6, 3), True), ((15, 12), False)])
+def test_a_part_in_the_middle_of_a_steep_view_may_be_of_the_same_board(shown, same):
+    """Where OpenCV sees that much of 13x12 corners, at a tilt of 65 to 70 degrees; a larger board is another one."""
+    grid = np.stack(np.meshgrid(200.0 + 12 * np.arange(shown[0]), 150.0 + 9 * np.arange(shown[1])), axis=-1)
+    with pytest.raises(NotUsable, match="wrong board: it seems to have") as caught:
+        _check_whole(grid, np.zeros((480, 640), np.uint8), (13, 12))
+    assert ("if it is the same board, tilt it less" in str(caught.value)) == same
 
 
 @pytest.mark.parametrize("pattern", [(8, 6), (10, 7), (9, 7)])

@@ -1,5 +1,6 @@
 """Pictures: what is refused and in which words; back and forth through files of all kinds that users have."""
 
+import io
 import struct
 from pathlib import Path
 
@@ -104,6 +105,11 @@ def test_what_is_no_picture(tmp_path, data, capfd):
     with pytest.raises(ImageError, match=r"is no picture that can be read.*JPEG or PNG.*Most Compatible"):
         load_image(tmp_path / "a.jpg")
     assert capfd.readouterr() == ("", "")
+
+
+def test_an_open_file_is_named_without_its_address_in_memory():
+    with pytest.raises(ImageError, match=r"^this picture cannot be read .*BytesIO"):
+        load_image(io.BytesIO(b"..."))
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".bmp"])

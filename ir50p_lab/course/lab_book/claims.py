@@ -38,6 +38,7 @@ def claim(text, value, *, below=None, above=None, near=None, within=None, unit="
             room.append(limit - value if word == "below" else value - limit)
     if near is not None:
         said.append(f"within {_words(within)} of {_words(near)}")
+        near = np.asarray(near, dtype=float)
         room += [near + within - value, value - (near - within)]
     room = np.stack(np.broadcast_arrays(*room))
     sentence = f"{text}: {f'{_words(value)} {unit}'.strip()} ({' and '.join(said)})"

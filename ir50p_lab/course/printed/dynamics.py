@@ -1,6 +1,6 @@
 """What the thesis prints in 1.5, equation by equation, as SymPy objects: mistakes included.
 
-Only for the 'Thesis check' cells of A1 and their tests. For calculations use `ir50p_lab.modelling`.
+Only for A1 and its tests. For calculations use `ir50p_lab.modelling`.
 The remark after 'wrong:' says what is wrong; an equation without one is right as printed. Symbols are those of
 `derive(links="thesis")`, so that printed and derived formulas can be compared at once.
 """
@@ -183,12 +183,6 @@ B = {
     "311": m2 * (lc3**2 * c23 * s23 + lc3 * l2 * s23 * c2),  # wrong: m2 for m3
     "322": m2 * lc3 * l2 * s3,  # wrong: m2 for m3; the final matrix has m3
     **dict.fromkeys("111 122 133 222 333".split(), 0),
-}
-TWICE_B = {  # the values printed at the end of each line, in terms of the M_ijk; the halves before them do not fit
-    "112": "112",
-    "113": "113",
-    "223": "223",
-    **dict.fromkeys("212 213 312 123 323 313".split(), 0),
 }
 # fmt: off
 C1 = Matrix([[0, 0, 0],                                    # wrong: (2,1) squares and last sign; (2,3) should be b233

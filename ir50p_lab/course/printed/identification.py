@@ -1,6 +1,6 @@
 """What the thesis prints in 2.2.4, as functions: mistakes included.
 
-Only for the 'Thesis check' cells of A1 and their tests. For calculations use `ir50p_lab.identification`.
+Only for A1 and its tests. For calculations use `ir50p_lab.identification`.
 Parts that the source has lost (the beginnings of U1 and U2, the columns 6 to 9) are taken as they must be.
 """
 

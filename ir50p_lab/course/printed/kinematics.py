@@ -1,6 +1,6 @@
 """What the thesis prints in 1.3 (Jacobian) and 1.4 (inverse kinematics), equation by equation: mistakes included.
 
-Only for the 'Thesis check' cells of A1 and their tests. For calculations use `ir50p_lab.modelling`.
+Only for A1 and its tests. For calculations use `ir50p_lab.modelling`.
 The remark after 'wrong:' says what is wrong; an equation without one is right as printed.
 """
 
@@ -56,15 +56,6 @@ def R_0_3_1_52():
 def Z_2_and_Z_3():
     """The results of (1.51) and (1.52): axes of joints 2 and 3, right."""
     return Matrix([s1, -c1, 0])
-
-
-def step_1_58(J, dx):
-    """(1.58), dq = (J^T J)^-1 J^T dx, with the J (n, 3) and the dx it is given.
-
-    Wrong: the J of (1.43) is (6, 3) and does not fit a dx of three numbers; with the (3, 3) Jv it is singular
-    wherever the arm is, its own start pose included. numpy.linalg.LinAlgError there, ValueError for the (6, 3) J.
-    """
-    return np.linalg.solve(J.T @ J, J.T @ dx)
 
 
 def sin_q3_1_61(cos_q3):

@@ -1,6 +1,6 @@
 """What the thesis prints in 1.1 and 1.2, equation by equation, as SymPy matrices: mistakes included.
 
-Only for the 'Thesis check' cells of A1 and their tests. For calculations use `ir50p_lab.modelling`.
+Only for A1 and its tests. For calculations use `ir50p_lab.modelling`.
 The remark after 'wrong:' says what is wrong; an equation without one is right as printed.
 """
 

@@ -29,6 +29,8 @@ def plain_outputs(outputs, widgets, *, live):
         parts = list(_parts(view["model_id"], widgets, still, live))
         if not parts and still:
             parts = [_image(still, data.get("text/plain", ""))]
+        if not parts and "text/html" in data:  # words in its place
+            parts = [data["text/html"]]
         if parts:
             plain.append(nbformat.v4.new_output("display_data", {"text/html": "\n".join(parts)}))
     return plain

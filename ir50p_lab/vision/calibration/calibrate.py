@@ -34,7 +34,8 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, progress=Non
     If residuals become much smaller when every corner of the board may move, the board is bent: a warning says so, and
     its shape is estimated with the camera. A bend of 0.3 to 0.5 mm over 200 mm may pass for flat (12 views, corners to
     0.1 px): fx was then off by 0.3 %, at most 1.2 %, that is two of its standard errors, at most five. A plate of glass
-    has no bend.
+    has no bend. The inner corners of a ChArUco board pass for those of a checkerboard, but its markers pull them by
+    half a pixel: take a plain one.
 
     Args:
         images: list of pictures (h, w, 3) uint8 RGB, grey ones (h, w), Frames or paths, mixed; or a folder.

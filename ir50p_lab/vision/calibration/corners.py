@@ -13,6 +13,9 @@ _UNKNOWN = 100  # px: OpenCV gives this width or more if squares are too small f
 _WINDOW = 0.36  # half the window of the refinement over the smallest square: a larger one reaches the next edges
 _WINDOW_PX = (2, 12)  # px, half that window at least and at most
 _CROSSING = 0.3  # contrast of squares outside the last corners over that inside: if it is less, the board ends there
+_NOTHING = (
+    "nothing like a checkerboard: more light, less glare, the whole board in view, tilted less, and no markers in it"
+)
 _MARGIN = 1.3  # squares: if the picture ends nearer to the last corner, the next one would lie outside
 
 
@@ -50,7 +53,7 @@ def _search(grey, pattern):
         if found is None:
             found = _without_rim(_search_larger(small, part), small)
     if found is None:
-        raise NotUsable(Reason.NO_BOARD, "nothing like a checkerboard: more light, less glare, the whole board in view")
+        raise NotUsable(Reason.NO_BOARD, _NOTHING)
     return (found.astype(float) + 0.5) * factor - 0.5  # edges of pixels scale, not their centres
 
 
@@ -133,6 +136,8 @@ def _check_whole(grid, grey, pattern):
     if pattern[0] < pattern[1]:
         seen = seen[::-1]
     detail = f"it seems to have {shown} inner corners, not {pattern[0]}x{pattern[1]}: give pattern={seen} if it has"
+    if ways:  # a small one, or a part of the board
+        detail += "; if it is the same board, tilt it less and show all of it"
     raise NotUsable(Reason.WRONG_BOARD, detail, seen)
 
 

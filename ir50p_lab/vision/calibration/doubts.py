@@ -22,7 +22,7 @@ def warnings_about(found):
     """
     K, views = found.K, found.views
     if found.rms > 0.7 * max(1, found.size[0] / 1280):
-        yield f"rms {found.rms:.2g} px is more than corners err: a bent board, or did focus or zoom change?"
+        yield f"rms {found.rms:.2g} px is more than corners err: a bent board, a ChArUco, or did focus or zoom change?"
     ratio = K[0, 0] / K[1, 1]
     if abs(ratio - 1) > _SQUARE:
         yield f"fx/fy = {ratio:.3f}: pixels are not square. Is the picture or the board stretched, or the board bent?"

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from ir50p_lab.errors import InputError
+from ir50p_lab.home import setting
 from ir50p_lab.inputs import vectors3
 from ir50p_lab.modelling.chain import frames
 from ir50p_lab.vision.board_pose import transform_points
-from ir50p_lab.vision.camera import Camera, Frame
+from ir50p_lab.vision.frame import Camera, Frame
 from ir50p_lab.vision.reaching.ball_locator import MARKER_AT
 from ir50p_lab.vision.rendering import SceneBall, arm_sticks, bench_camera, bench_scene, render_scene
 
@@ -92,8 +93,9 @@ class RenderedBench(Camera):
 
 
 def camera_over(bench, balls=(0.40, 0.0, 0.03), *, small=False):
-    """The camera for a bench: rendered over a simulated arm, else `open_camera()`; one line says which.
+    """The camera for a bench: rendered over a simulated arm, else a webcam; one line says which.
 
+    The webcam is what IR50P_CAMERA says, else number 0: a loop needs one that gives pictures while a cell runs.
     balls: where balls lie in a rendered picture (a real camera sees yours); small: pictures of half the width and
     height, for what must be quick.
     Raises CameraError for a real arm if there is no webcam: it would reach for a ball that was only drawn.
@@ -105,4 +107,5 @@ def camera_over(bench, balls=(0.40, 0.0, 0.03), *, small=False):
         width, height = camera.size
         print(f"Camera: {camera.name}, {width}x{height}, rendered (a simulated arm is seen by no webcam)")
         return camera
-    return open_camera(size=(320, 240)) if small else open_camera()
+    source = setting("IR50P_CAMERA") or 0
+    return open_camera(source, size=(320, 240)) if small else open_camera(source)

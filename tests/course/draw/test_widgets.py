@@ -225,19 +225,6 @@ def test_a_hundred_changes_from_threads_end_with_the_last_value_drawn():
     assert 1 < len(drawn) < 80, "what came in during a drawing was not queued"
 
 
-def test_update_may_move_its_own_sliders():
-    figure = new_figure(2, 2)
-
-    def update(a, b):
-        if a > b:
-            panel.set(b=a)
-
-    panel = SimpleNamespace()
-    panel = live(figure, update, a=(0.0, 1.0, 0.1, 0.0), b=(0.0, 1.0, 0.1, 0.5))
-    panel.set(a=0.9)
-    assert panel.drawn == {"a": 0.9, "b": 0.9}
-
-
 def test_a_denser_display_gets_as_many_more_pixels():
     panel = line_panel()
     panel.image.set_state({"ratio": 2.0})

@@ -12,7 +12,7 @@ from ir50p_lab.course import fitting
 from ir50p_lab.course.draw.painter import Painter
 from ir50p_lab.course.fitting import results, views
 from ir50p_lab.errors import InputError
-from ir50p_lab.identification import fit, fit_joint, load_excitations, process, regressor
+from ir50p_lab.identification import fit, load_excitations, process, regressor
 from ir50p_lab.modelling import IR50P, gravity, mass_matrix
 from ir50p_lab.signals import quintic
 
@@ -114,22 +114,6 @@ def test_cutoff_view(records):
     assert [1.5, 1.5] in [list(line.get_xdata()) for line in view.figure.axes[1].lines]
     with pytest.raises(InputError):
         view.update(60.0)
-
-
-def test_spoilt_data_can_be_repaired(records):
-    t, q, u = records[0].t[:3000], np.degrees(records[0].q[:3000, 0]), records[0].u[:3000, 0]
-    q[1000:1080] = np.nan
-    t, q, u = (np.roll(column, 1500) for column in (t, q, u))
-    for _ in range(2):
-        with pytest.raises(InputError):
-            fit_joint(t, q, u)
-        keep = np.isfinite(q)
-        t, q, u = t[keep], q[keep], u[keep]
-    order = np.argsort(t)
-    assert any("degrees" in text for text in fit_joint(t[order], q[order], u[order]).warnings)
-    found = fit_joint(t[order], np.radians(q[order]), u[order])
-    whole = fit_joint(records[0].t[:3000], records[0].q[:3000, 0], records[0].u[:3000, 0])
-    assert found.inertia == pytest.approx(whole.inertia, rel=0.1)
 
 
 def test_rows_of_a_recording_are_those_of_the_package(records, monkeypatch, tmp_path):

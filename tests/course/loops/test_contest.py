@@ -25,33 +25,6 @@ def test_ends_of_the_sliders_and_the_thesis_lose_and_a_tuned_set_wins(seed):
     assert jury.score(pid(**TUNED), [seed], IR50P).won
 
 
-class Holding:
-    """A controller whose command is held for `samples`, to seem calm."""
-
-    unit = "PWM"
-
-    def __init__(self, inner, samples):
-        self.inner, self.samples = inner, samples
-        self.reset()
-
-    def reset(self):
-        self.inner.reset()
-        self.count, self.u = 0, np.zeros(3)
-
-    def step(self, t, q, reference):
-        u = self.inner.step(t, q, reference)
-        if self.count % self.samples == 0:
-            self.u = u
-        self.count += 1
-        return self.u
-
-
-@pytest.mark.parametrize("samples", [2, 10])
-def test_holding_the_command_buys_nothing(samples):
-    for seed in UNITS[:3]:
-        assert not jury.score(Holding(pid(*HIGHEST), samples), [seed], IR50P).won
-
-
 def test_at_most_one_in_twenty_random_settings_wins():
     rng = np.random.default_rng(11)
     won = 0

@@ -38,20 +38,3 @@ def test_2_51_is_wrong_in_two_columns():
     unit = np.where(qd == 0, qd, 1.0)  # at q1' = 1 a lost square does not show
     difference = np.abs(regressor_2_51(q, unit, qdd) - regressor(q, unit, qdd)).max(axis=0)
     assert np.argwhere(difference > 1e-9).tolist() == [[0, 1], [0, 4]]
-
-
-def test_2_37_to_2_40_mix_samples_and_signs():
-    """The sum at t does not go with the inverse at t - 1, and the measurement is added."""
-    Phi = regressor(q, qd, qdd)
-    y = Phi @ ARM.theta[0] + np.random.default_rng(1).normal(size=(50, 3))
-    A, Y = Phi.reshape(-1, 20), y.ravel()
-    old, new = A[:-3].T @ A[:-3], A.T @ A  # P^-1 at t - 1 and t: three equations a sample
-    sum_old, sum_new = A[:-3].T @ Y[:-3], A.T @ Y
-    phi, before, now = Phi[49].T, np.linalg.solve(old, sum_old), np.linalg.solve(new, sum_new)
-    np.testing.assert_allclose(new, old + phi @ phi.T, atol=1e-9)  # (2.36)
-    assert not np.allclose(np.linalg.solve(old, sum_new), now, rtol=1e-3)  # (2.37)
-    np.testing.assert_allclose(sum_old, old @ before, atol=1e-9)
-    assert not np.allclose(sum_new, old @ before)  # (2.39)
-    unlearn, learn = np.linalg.solve(new, phi @ phi.T @ before), np.linalg.solve(new, phi @ y[49])
-    np.testing.assert_allclose(before - unlearn + learn, now, atol=1e-9)
-    assert not np.allclose(before - unlearn - learn, now)  # (2.40), first line

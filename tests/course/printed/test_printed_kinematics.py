@@ -7,7 +7,7 @@ from sympy import Matrix, cos, pi, sin
 
 from ir50p_lab.course.printed import kinematics as printed
 from ir50p_lab.course.printed.pose import T_1_31, l1, l2, l3, q, q1, q2, q3
-from ir50p_lab.modelling import IR50P, THESIS_A, forward_kinematics, frames, jacobian
+from ir50p_lab.modelling import IR50P, THESIS_A, forward_kinematics
 
 rho = l2 * cos(q2) + l3 * cos(q2 + q3)
 TIP = Matrix([cos(q1) * rho, sin(q1) * rho, l1 + l2 * sin(q2) + l3 * sin(q2 + q3)])
@@ -18,36 +18,11 @@ def is_zero(expression):
     return sympy.simplify(expression) == sympy.zeros(*expression.shape)
 
 
-def test_columns_are_the_derivatives_of_the_tip():
-    for angle, column in zip(q, printed.columns_1_46_to_1_48(), strict=True):
-        assert is_zero(column - TIP.diff(angle))
-
-
 def test_the_printed_tip_and_its_derivatives_repeat_row_1():
     t = T_1_31()[:3, 3]  # (1.45)
     assert t[1] == t[0] and is_zero(Matrix([t[0] - TIP[0], t[2] - TIP[2]]))
     for angle in q:
         assert sympy.simplify((t[1] - TIP[1]).diff(angle)) != 0
-
-
-def test_1_49_is_wrong_in_three_entries():
-    difference = sympy.simplify(printed.J_v_1_49() - TIP.jacobian(q))
-    assert [k for k in range(9) if difference[k] != 0] == [5, 7, 8]
-
-
-def turning_axis(arm, pose, joint):
-    """Axis of the hand's turning for one joint, from two rotation matrices."""
-    step = 1e-6 * np.eye(3)[joint]
-    ahead, behind = (frames(arm, np.array(pose) + sign * step)[3, :3, :3] for sign in (1, -1))
-    S = (ahead - behind) / 2e-6 @ frames(arm, pose)[3, :3, :3].T
-    return np.array([S[2, 1], S[0, 2], S[1, 0]])
-
-
-@pytest.mark.parametrize("arm", [IR50P, THESIS_A], ids=lambda arm: arm.name)
-def test_axes_taken_from_the_joints_own_frames_are_wrong_for_joints_1_and_3(arm):
-    literal = printed.J_omega_1_37(frames(arm, Q))
-    truth = np.column_stack([turning_axis(arm, Q, k) for k in range(3)])
-    assert [np.allclose(literal[:, k], truth[:, k], atol=1e-8) for k in range(3)] == [False, True, False]
 
 
 def test_matrices_on_the_way_are_no_rotations_or_give_another_axis():
@@ -61,14 +36,6 @@ def test_matrices_on_the_way_are_no_rotations_or_give_another_axis():
     third = printed.R_0_3_1_52()
     assert [k for k in range(9) if sympy.simplify(third[k] - (turn * right)[k]) != 0] == [5]
     assert third * printed.z_hat != printed.Z_2_and_Z_3()
-
-
-def test_the_printed_step_does_not_fit_or_does_not_exist_at_the_start():
-    J, dx = jacobian(THESIS_A, [0, 0, 0]), np.array([0.1, 0.2, 0.3])
-    with pytest.raises(ValueError, match=r"(?i)mismatch|aligned|shape"):
-        printed.step_1_58(J, dx)
-    with pytest.raises(np.linalg.LinAlgError):
-        printed.step_1_58(J[:3], dx)
 
 
 @pytest.mark.parametrize("arm", [IR50P, THESIS_A], ids=lambda arm: arm.name)

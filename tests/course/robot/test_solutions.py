@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import solutions
 
-from ir50p_lab import modelling
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.robot.arm_numbers import parts
 from ir50p_lab.modelling import IR50P
@@ -86,56 +85,6 @@ def test_a_pid_loop_is_the_courses():
     np.testing.assert_allclose(ends, course.q[1:], atol=3e-5)
     own = simulate(IR50P, mine.PID(**gains), target, duration=2.0)  # the very class in the course's simulation
     np.testing.assert_allclose(own.q, simulate(IR50P, PID(**gains, limit_pwm=255), target, duration=2.0).q, atol=1e-9)
-
-
-def motion(count=400, seed=1):
-    """A rich motion with its exact derivatives."""
-    t = np.linspace(0, 6, count)[:, None]
-    rng = np.random.default_rng(seed)
-    q, qd, qdd = np.zeros((3, count, 3))
-    for w in (1.3, 2.9, 4.7):
-        a, phase = rng.uniform(0.2, 0.5, 3), rng.uniform(0, 6, 3)
-        q, qd, qdd = (
-            q + a * np.sin(w * t + phase),
-            qd + a * w * np.cos(w * t + phase),
-            qdd - a * w**2 * np.sin(w * t + phase),
-        )
-    return q, qd, qdd
-
-
-def test_identification_finds_the_friction_and_predicts():
-    q, qd, qdd = motion()
-    u = np.array([mine.regressor(*row, np.sign(row[1])) for row in zip(q, qd, qdd, strict=True)])
-    u = np.einsum("nij,ij->ni", u, IR50P.theta_pwm)
-    Y = np.array([mine.regressor(*row, np.sign(row[1])) for row in zip(q, qd, qdd, strict=True)])
-    noisy = u + np.random.default_rng(2).normal(0, 1, u.shape)
-    for joint in range(3):
-        used = np.flatnonzero(np.abs(Y[:, joint]).max(axis=0) > 0)
-        used = used[~np.isin(used, [6, 7, 8 if joint == 2 else 99])]
-        theta, errors = mine.least_squares(Y[:, joint, used], noisy[:, joint])
-        friction = np.isin(used, [11 + 2 * joint])
-        assert np.all(np.abs(theta - IR50P.theta_pwm[joint, used])[friction] < 4 * errors[friction])
-        assert mine.fit_percent(u[:, joint], Y[:, joint, used] @ theta) > 99
-        guess, P = np.zeros(len(used)), 1e8 * np.eye(len(used))
-        for phi, y in zip(Y[:, joint, used], noisy[:, joint], strict=True):
-            guess, P = mine.rls_step(guess, P, phi, y, 1.0)
-        np.testing.assert_allclose(Y[:, joint, used] @ guess, Y[:, joint, used] @ theta, atol=1e-2)
-
-
-def test_computed_torque_and_adaptation_follow_with_a_true_model():
-    def model(q, qd, qdd):
-        return np.einsum("ij,ij->i", mine.regressor(q, qd, qdd, 0 * qd), rigid.theta)
-
-    reference = np.array([[0.3, 0.5, -0.4], [0.1, 0, 0], [0, 0, 0]])
-    q, qd = np.array([0.2, 0.4, -0.5]), np.array([0.0, 0.1, 0.2])
-    kp, kd = np.array([100, 100, 100]), np.array([20, 20, 20])
-    torque = mine.computed_torque(q, qd, reference, model, kp, kd)
-    wanted = kp * (reference[0] - q) + kd * (reference[1] - qd)
-    np.testing.assert_allclose(modelling.forward_dynamics(rigid, q, qd, torque), wanted, atol=1e-9)
-    s = np.array([0.1, -0.2, 0.3])
-    Y = mine.regressor(q, qd, np.zeros(3), np.sign(qd))
-    change = mine.adaptive_step(rigid.theta, Y, s, 2.0, 0.01) - rigid.theta
-    assert np.einsum("ij,ij", change, Y * s[:, None]) < 0  # what is learnt takes the error's power away
 
 
 def picture(K, T_base_cam, ball, radius, size=(480, 640)):

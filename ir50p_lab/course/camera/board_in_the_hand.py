@@ -1,0 +1,52 @@
+"""Appendix A2: a board that the hand holds up to a camera on its stand."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ir50p_lab.course.draw.style import COLOURS, subplots
+from ir50p_lab.modelling import IR50P, frames
+from ir50p_lab.vision import board_points, board_pose
+from ir50p_lab.vision.board_pose import inverse_transform, transform
+from ir50p_lab.vision.rendering import bench_camera
+
+T_HAND_BOARD = transform((0.3, 1.2, 0.2), (0.02, -0.06, -0.05))
+
+
+class Session(NamedTuple):
+    """Poses (n, 3) rad, where the camera saw the board in them (n, 4, 4), and where the camera really stands (4, 4)."""
+
+    poses: np.ndarray
+    T_cam_board: np.ndarray
+    T_base_cam: np.ndarray
+
+
+def board_in_the_hand(poses=15, *, noise=0.1, seed=0):
+    """So many poses of the IR50P in which the whole board is in the picture, corners with `noise` px: Session."""
+    rng, (camera, T_cam_base) = np.random.default_rng(seed), bench_camera()
+    points, found, seen = board_points(T_table_board=np.eye(4)), [], []
+    while len(found) < poses:
+        q = rng.uniform([-0.7, 0.1, -1.9], [0.7, 1.1, -0.4])
+        T = frames(IR50P, q)[3] @ T_HAND_BOARD
+        corners = camera.project(T_cam_base, points @ T[:3, :3].T + T[:3, 3]) + rng.normal(0, noise, (len(points), 2))
+        if (corners > 0).all() and (corners < camera.size).all():
+            found.append(q)
+            seen.append(board_pose(camera, corners, points)[0])
+    return Session(np.array(found), np.array(seen), inverse_transform(T_cam_base))
+
+
+def turned_figure(hands, T_base_cam, angle):
+    """Hands (n, 4, 4) and camera from above, and all of them turned by `angle` rad about the column."""
+    figure, axes = subplots(6.5, 4.0)
+    places = np.vstack([hands[:, :2, 3], T_base_cam[:2, 3]])
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    looks = (places, COLOURS["blue"], "as they are"), (places @ turn.T, COLOURS["orange"], "turned about the column")
+    for xy, colour, label in looks:
+        for hand in xy[:-1]:
+            axes.plot(*np.transpose([hand, xy[-1]]), color=colour, linewidth=0.4)
+        axes.plot(*xy[:-1].T, "o", color=colour, label=label)
+        axes.plot(*xy[-1], "s", color=colour, markersize=10)  # the camera
+    axes.plot(0, 0, "k+", markersize=14, label="column")
+    axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.2), ncols=3)
+    return figure
