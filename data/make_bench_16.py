@@ -1,4 +1,4 @@
-"""The pictures of notebook 16: the bench with the ball moved, in full light, in dim light, and without the ball. Rendered.
+"""The pictures of notebook 16: the bench with the ball moved, in full and in dim light, and without it. Rendered.
 
 `python -m data.make_bench_16` writes `data/bench_16*.jpg` again, in red and in blue.
 """

@@ -24,13 +24,13 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "bench": 2380,
     "identification": 1479,
     "vision": 2346,
-    "course": 8585,  # without the next two
-    "course/publishing": 468,
+    "course": 8536,  # without the next two
+    "course/publishing": 469,
     "course/grading": 0,
     "launcher": 575,
-    "root": 268,
+    "root": 272,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_545, 19_868, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_501, 19_741, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -64,7 +64,7 @@ def test_what_is_written_survives_a_reload_and_the_rest_says_what_it_needs(tmp_p
     )
     assert "A browser tab cannot do this: a loop in the background needs threads" in refused.stderr, refused.stderr
     vision = run("from ir50p_lab.vision import find_balls", tmp_path / "notebooks", tmp_path)
-    assert "cv2, which measures pictures, is not loaded" in vision.stderr, vision.stderr
+    assert "NotInABrowserError: A browser tab cannot do this: cv2, which measures pictures" in vision.stderr
 
 
 def test_a_push_by_hand_is_a_run_that_is_played(tmp_path):

@@ -36,3 +36,8 @@ def test_the_cause_is_kept_and_the_file_that_hides_a_package_is_named(tmp_path, 
 
 def test_a_name_that_does_not_exist_is_told_as_ever(tmp_path):
     assert "cannot import name 'calibrato'" in last_line("from ir50p_lab.vision import calibrato", tmp_path)
+
+
+def test_a_package_that_is_missing_is_named_with_what_installs_it(tmp_path):
+    said = last_line("import sys; sys.modules['cv2'] = None; from ir50p_lab.vision import find_balls", tmp_path)
+    assert "find_balls could not be loaded" in said and "cv2 is not installed: 'python3 -m ir50p_lab setup'" in said

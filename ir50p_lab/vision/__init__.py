@@ -20,7 +20,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "calibration.calibration_result": ["Calibration"],
         "ball.find": ["Ball", "Balls", "find_balls"],
         "board_pose": ["board_points", "board_pose"],
-        "ball.colour": ["RED", "Colour", "learn_colour"],
+        "ball.colour": ["RED", "Colour"],
         "pinhole": ["Pinhole"],
         "rendering": ["render_scene"],
         "reaching.plan": ["plan", "reach_pose", "work_area"],

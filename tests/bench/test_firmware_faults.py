@@ -67,30 +67,3 @@ def test_board_reset_in_the_run(board):
     assert off_since(board) - when < 1e-3
     board.sleep(0.3)
     assert board.pins().pwm == (0, 0, 0)
-
-
-@pytest.mark.parametrize("way", ["to_board", "to_host"])
-def test_noise_on_the_wire(board, way):
-    """One byte in 200 is hit: commands and answers are lost, none is taken for another, the run goes on."""
-    rng = np.random.default_rng(7)
-
-    def noise(data):
-        hit = rng.random(len(data)) < 0.005
-        return bytes(np.where(hit, rng.integers(0, 256, len(data)), np.frombuffer(data, np.uint8)).astype(np.uint8))
-
-    bench = bench_of(board).open()
-    setattr(board, way, noise)
-    samples, missed = [], 0
-    for sample in bench.run(2.0):
-        samples.append(sample)
-        bench.drive((0, 0, 0) if len(samples) % 2 else (12, 0, 0))
-        missed = sample.missed
-    statistics = bench.statistics
-    assert len(samples) == 200
-    assert statistics.repeats > 5
-    assert (statistics.bad_commands if way == "to_board" else statistics.bad_replies) > 5
-    assert statistics.watchdog_trips == 0
-    assert missed < 10
-    q = np.array([sample.q for sample in samples])
-    assert np.ptp(q, axis=0).max() < 0.1  # the arm stands: whatever came through was measured
-    assert {pins.pwm[1:] for _, pins in board.changes} == {(0, 0)}

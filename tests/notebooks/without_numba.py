@@ -11,6 +11,7 @@ import sys
 import nbformat
 import numpy as np
 import pytest
+from minutes import core_of
 from notebook_runner import NOTEBOOKS, ROOT, run_notebook
 
 from ir50p_lab.course.publishing import site
@@ -55,6 +56,8 @@ assert "it turns the wrong way round" in told.says, told
 )
 def test_a_notebook_runs_without_what_a_browser_lacks(path, tmp_path):
     notebook = nbformat.read(path, as_version=4)
+    if path.name.startswith("16"):
+        notebook.cells = core_of(notebook.cells)  # what needs OpenCV is marked more
     run = run_notebook(notebook, timeout=120, variables=LACKING | {"IR50P_HOME": str(tmp_path)}, push=False)
     if run.error:
         pytest.fail(f"{path.name}, {run.error}", pytrace=False)

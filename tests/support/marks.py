@@ -32,7 +32,6 @@ MARKS = {
         "course/checking/test_functions.py",
         "course/live_arm/test_live_arm.py",
         "course/draw/test_painter.py",
-        "course/images/test_vision_views.py",
         "identification/test_fit.py",
         "identification/test_fopdt.py",
         "identification/test_output_error.py",

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.checking.task import Mistake, notebook_tasks
+from ir50p_lab.course.checking.task import notebook_tasks
 from ir50p_lab.course.images.functions.circle_votes import circle_votes
 
 
@@ -45,43 +45,17 @@ def _masks():
         disc = np.hypot(columns - x, rows - y) < r
         bar = (np.abs(rows - 62) < 3) & (columns > 20)
         cases += [(disc, range(7, 19)), (disc | bar, [18, 14, 8, 9, 12, 15, 10])]
-    return cases
+    small = np.hypot(columns - 15, rows - 15) < 7
+    half = (np.hypot(columns - 55, rows - 40) < 24) & (rows < 40)  # more votes, and a smaller share
+    return [*cases, (small | half, [24, 20, 7, 9])]
 
-
-# ----------------------------------------------------------------------------------------------- typical mistakes
-def _first(mask, radii):
-    return *strongest(edges_of(mask), radii[0], mask.shape), radii[0]
-
-
-def _last(mask, radii):
-    return *strongest(edges_of(mask), radii[-1], mask.shape), radii[-1]
-
-
-def _most_votes(mask, radii):
-    edges = edges_of(mask)
-    return max(((*strongest(edges, radius, mask.shape), radius) for radius in radii), key=lambda one: one[0] * one[2])
-
-
-def _least(mask, radii):
-    edges = edges_of(mask)
-    return min((*strongest(edges, radius, mask.shape), radius) for radius in radii)
-
-
-def _largest(mask, radii):
-    edges = edges_of(mask)
-    return max(((*strongest(edges, radius, mask.shape), radius) for radius in radii), key=lambda one: one[2])
-
-
-_SLIPS = (
-    (_first, "only the first radius is tried: is `return` inside the loop?"),
-    (_last, "the last radius wins, whatever its share: compare each with the best so far"),
-    (_least, "the smallest share wins: the largest is asked for"),
-    (_largest, "the largest radius wins: compare the shares, not the radii"),
-    (_most_votes, "the votes themselves are compared: a large circle has more of them, so compare shares"),
-)
 
 TASKS = notebook_tasks(
     __file__,
-    best_circle=(best_circle, _masks, "share, place and radius of the circle with the largest share", {
-        "results": ("share", "place", "radius"), "mistakes": tuple(Mistake(*slip) for slip in _SLIPS)}),
-)  # fmt: skip
+    best_circle=(
+        best_circle,
+        _masks,
+        "share, place and radius of the circle with the largest share",
+        {"results": ("share", "place", "radius")},
+    ),
+)

@@ -89,8 +89,7 @@ def measured(name, value, unit="", by=""):
     words = entry.get("words", {})
     guess, truth = (words.get(f"{number:g}", _say(number, unit)) for number in (entry["guess"], value))
     print(f"{name}: you guessed {guess}, it is {truth}")
-    within = entry.get("within", 0.1)  # a guess of an earlier version has none
-    if abs(entry["guess"] - value) > within * abs(value) and "why" not in entry:
+    if abs(entry["guess"] - value) > entry["within"] * abs(value) and "why" not in entry:
         print(f'Why? One sentence: why("{name}", "...")')
 
 

@@ -18,8 +18,9 @@ from pathlib import Path
 from ir50p_lab.errors import LabError
 from ir50p_lab.home import PROJECT
 
-NOTEBOOKS = "00 01 02 03 04 05 06 07 08".split()  # in a tab; in CI without numba, OpenCV, pyserial and loky
-_DATA = ("first_reach.csv", "first_reach.jpg", "drawings", "arm_example.toml")
+NOTEBOOKS = "00 01 02 03 04 05 06 07 08 16".split()  # in a tab; in CI without numba, OpenCV, pyserial and loky
+_DATA = ("first_reach.csv", "first_reach.jpg", "drawings", "arm_example.toml", "scenes")
+_DATA += tuple(f"bench_16{ball}{which}.jpg" for ball in ("", "_blue") for which in ("", "_dim", "_empty"))
 _PURE = "anywidget ipywidgets comm psygnal typing_extensions jupyterlab_widgets widgetsnbextension lazy_loader".split()
 _PURE += "cloudpickle tomlkit tqdm sympy mpmath".split()
 _AT_ONCE = ["ir50p-lab", "ipython", "jedi", "sqlite3", "comm"]  # fetched while the page opens

@@ -59,7 +59,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
     """
     image = check_image(image)
     if not isinstance(colour, Colour):
-        raise InputError(f"colour = {colour!r:.60}: give RED or another Colour (learn_colour makes one from a click)")
+        raise InputError(f"colour = {colour!r:.60}: give RED or another Colour(hue=..., tolerance=...), degrees")
     least_radius = number("least_radius", least_radius, "> 0", unit="px")
     size = image.shape[1::-1]
     pinhole = Pinhole.simple(_F * max(size), size) if camera is None else as_pinhole(camera)

@@ -5,10 +5,9 @@ import re
 import numpy as np
 import pytest
 import solutions
-from cells import cell
+from told import told_of_body
 
-from ir50p_lab.course import check, my_robot
-from ir50p_lab.course.checking.tasks import task
+from ir50p_lab.course import my_robot
 from ir50p_lab.identification import regressor as columns_of_the_package
 
 
@@ -88,15 +87,9 @@ WRONG = [  # function, its body, what is said
 ]
 
 
-def said(capsys, name, body):
-    """What check says of a function with this body."""
-    check(name, cell(f"def {name}({', '.join(task(name).signature)}):\n    {body}", name))
-    return capsys.readouterr().out.split("one input that fails")[0]
-
-
 @pytest.mark.parametrize(("name", "body", "words"), WRONG, ids=range(len(WRONG)))
 def test_a_wrong_answer_is_told_by_its_symptom(capsys, name, body, words):
-    says = said(capsys, name, body)
+    says = told_of_body(capsys, name, body)
     assert "not yet" in says and re.search(words, says), says
 
 
@@ -116,12 +109,12 @@ ROUTES = [
 
 @pytest.mark.parametrize(("name", "body"), ROUTES, ids=range(len(ROUTES)))
 def test_other_routes_are_right(capsys, name, body):
-    assert "right, and yours" in said(capsys, name, body)
+    assert "right, and yours" in told_of_body(capsys, name, body)
 
 
 def test_what_is_given_comes_along(capsys):
     """body_columns stands in no cell of the student's, and in the file that is kept."""
-    assert "right, and yours" in said(capsys, "regressor", of_rows())
+    assert "right, and yours" in told_of_body(capsys, "regressor", of_rows())
     q, qd, qdd = np.random.default_rng(0).uniform(-1, 1, (3, 3))
     ours = columns_of_the_package(q[None], qd[None], qdd[None])[0]
     assert np.allclose(my_robot.regressor(q, qd, qdd, np.sign(qd)), ours)

@@ -1,7 +1,5 @@
 """The lab book: guesses, what came out and why, partners, notes, figures; a damaged one is named."""
 
-import json
-
 import pytest
 from matplotlib.figure import Figure
 
@@ -102,17 +100,6 @@ def test_a_notebook_run_twice_leaves_a_trace_of_what_it_changes():
     assert [now[key] for key in ("guess", "changed", "truth", "why")] == [1, 5, 4, "friction"]
     earlier = [(key, one[key]) for one in now["earlier"] for key in ("changed", "truth", "why") if key in one]
     assert earlier == [("truth", 2), ("why", "weight"), ("changed", 3)]
-
-
-def test_a_lab_book_of_an_earlier_version_goes_on(capsys):
-    old = {"guess": 0.1, "unit": "m", "guessed": "2025-03-01", "changed": 0.3, "truth": 0.33, "measured": "2025-03-01"}
-    lab_book.path().parent.mkdir()
-    lab_book.path().write_text(json.dumps({"predictions": {"fk.height": old}}))
-    predict("fk.height", 0.1, "m")
-    measured("fk.height", 0.34)
-    assert 'why("fk.height"' in said(capsys)
-    assert entry("fk.height")["earlier"] == [{"truth": 0.33, "measured": "2025-03-01"}]
-    assert not entry("fk.height").get("late")
 
 
 def test_partners_are_written_down_and_said(capsys):

@@ -13,7 +13,7 @@ from ir50p_lab.course.live_arm.badge import badge_of
 from ir50p_lab.course.motion import trajectory_views as views
 from ir50p_lab.course.robot import student_package
 from ir50p_lab.course.robot.source import Source
-from ir50p_lab.modelling import IR50P, THESIS_A, mass_matrix
+from ir50p_lab.modelling import IR50P, mass_matrix
 
 
 def told(name, *changes, text=None):
@@ -57,13 +57,6 @@ def test_the_last_honey_is_too_thick_for_the_step():
     z = 0.01 * views.honey(M) * np.max(np.linalg.eigvals(np.linalg.solve(M, np.eye(3))).real)
     growth = 1 - z + z**2 / 2 - z**3 / 6 + z**4 / 24
     assert (growth[:3] < 1).all() and growth[3] > 1
-
-
-def test_the_longest_step_of_the_thesis_arm():
-    """Runge and Kutta's step is stable below 2.785 over the fastest rate: with the thesis' own gains 1.6 ms."""
-    rates = np.linalg.eigvals(np.linalg.solve(mass_matrix(THESIS_A, np.zeros(3)), np.diag([10, 40, 40])))
-    assert abs(np.polyval([1 / 24, -1 / 6, 1 / 2, -1, 1], 2.785) - 1) < 1e-3
-    assert round(np.max(rates.real)) == 1745 and abs(2.785 / np.max(rates.real) - 1.6e-3) < 1e-5
 
 
 def test_a_badge_follows_what_a_function_calls_beside_my_robot(tmp_path, monkeypatch):

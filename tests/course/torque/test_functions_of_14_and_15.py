@@ -3,10 +3,9 @@
 import re
 
 import pytest
-from cells import cell
+from told import told_of_body
 
-from ir50p_lab.course import check, my_robot
-from ir50p_lab.course.checking.tasks import task
+from ir50p_lab.course import my_robot
 
 
 @pytest.fixture(autouse=True)
@@ -44,15 +43,9 @@ WRONG = [  # function, its body, what is said
 ]
 
 
-def said(capsys, name, body):
-    """What check says of a function with this body."""
-    check(name, cell(f"def {name}({', '.join(task(name).signature)}):\n    {body}", name))
-    return capsys.readouterr().out.split("one input that fails")[0]
-
-
 @pytest.mark.parametrize(("name", "body", "words"), WRONG, ids=range(len(WRONG)))
 def test_a_wrong_answer_is_told_by_its_symptom(capsys, name, body, words):
-    says = said(capsys, name, body)
+    says = told_of_body(capsys, name, body)
     assert "not yet" in says and re.search(words, says), says
 
 
@@ -72,4 +65,4 @@ ROUTES = [
 
 @pytest.mark.parametrize(("name", "body"), ROUTES, ids=range(len(ROUTES)))
 def test_other_routes_are_right(capsys, name, body):
-    assert "right, and yours" in said(capsys, name, body)
+    assert "right, and yours" in told_of_body(capsys, name, body)

@@ -17,20 +17,12 @@ def circle_votes(points, inwards, radius, shape):
 
 _SMALL = np.array([[3, 2], [7, 2], [5, 0], [5, 4], [4, 2]])  # a small circle about (5, 2), and one for its middle
 _INTO_IT = np.array([[1.0, 0], [-1, 0], [0, 1], [0, -1], [1, 0]])
-
-
 _SIZES = ((8, 12), 4, 9), ((12, 7), 3, 9), ((9, 9), 9.5, 12), ((6, 10), 2, 0), ((7, 11), 5, 8)
 
 
 def _edges():
     rng, cases = np.random.default_rng(162), []
-    for (h, w), radius, count in (
-        ((8, 12), 4, 9),
-        ((12, 7), 3, 9),
-        ((9, 9), 9.5, 12),
-        ((6, 10), 2, 0),
-        ((7, 11), 5, 8),
-    ):
+    for (h, w), radius, count in _SIZES:
         points, turns = rng.integers(0, (w, h), (count, 2)), rng.uniform(-np.pi, np.pi, count)
         inwards = np.column_stack([np.cos(turns), np.sin(turns)])
         if count:  # several for one place in a corner, and one for each side outside
@@ -48,15 +40,14 @@ _SAYS = sentences("circle_votes", __file__)
 
 
 def _symptom(case, returned, expected):
-    votes, right = np.asarray(returned, dtype=float), expected.sum()
+    votes, points = np.asarray(returned, dtype=float), len(case[0])
     if not np.array_equal(votes, np.round(votes)):
         return _SAYS["weighed"]
-    if votes.sum() > len(case[0]):
-        return _SAYS["many"].format(int(votes.sum()), len(case[0]))
-    if votes.max(initial=0) <= 1 < expected.max(initial=0):
-        return _SAYS["once"]
-    which = "more" if votes.sum() > right else "fewer" if votes.sum() < right else "elsewhere"
-    return _SAYS[which].format(int(votes.sum()), right)
+    found, right = int(votes.sum()), int(expected.sum())
+    if found > points:
+        return _SAYS["many"].format(found, points)
+    which = "elsewhere" if found == right else "all" if found == points else "others"
+    return _SAYS[which].format(found, right)
 
 
 TASK = task_of(circle_votes, cases=_edges, symptom=_symptom)

@@ -32,7 +32,7 @@ def hue_mask(rgb, hue, tolerance):
 
 _ODD = np.array([(0, 0, 0), (255, 255, 255), (120, 119, 119), (20, 20, 20), (119, 119, 120), (200, 180, 182)])
 _REDS = np.array([(60, 12, 14), (250, 40, 44), (250, 44, 40)])  # dark; a little on either side of the seam
-_ASKED = ((0.0, 0.3), (2.1, 0.4), (3.1, 0.5), (-3.0, 0.5), (6.1, 0.3), (-0.2, 0.4), (1.0, 1.2), (0.0, 0.0873))
+_ASKED = ((0.0, 0.3), (2.1, 0.4), (3.1, 0.5), (-3.0, 0.5), (-1.5, 0.3), (-0.2, 0.4), (1.0, 1.2), (0.0, 0.0873))
 
 
 def _pictures():
@@ -60,7 +60,10 @@ _SAYS = sentences("hue_mask", __file__)
 
 
 def _symptom(case, returned, expected):
-    row, column = np.argwhere(np.asarray(returned).astype(bool) != expected)[0]
+    mask = np.asarray(returned).astype(bool)
+    if mask.shape != expected.shape or (mask == expected).all():
+        return ""
+    row, column = np.argwhere(mask != expected)[0]
     pixel = case[0][row, column] * (1 if case[0].dtype == np.uint8 else 255)
     return _SAYS["lost" if expected[row, column] else "taken"].format(*pixel.round().astype(int), *case[1:])
 
