@@ -13,36 +13,7 @@ from matplotlib.patches import FancyBboxPatch
 
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 
-_BOX = {"boxstyle": "round,pad=0.8", "fc": "#EDF3F8", "ec": "#0072B2"}
 _ARROW = {"arrowstyle": "-|>", "color": COLOURS["dark"], "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
-
-
-def picture_to_motors():
-    """What passes from picture to motor, box by box (Figure 4.14). Returns: LabFigure."""
-    figure, ax = subplots(9.0, 2.2)
-    ax.set(xlim=(0, 6), ylim=(-0.05, 1.6), title="From the picture to the motors, and round again")
-    ax.axis("off")
-    boxes = (
-        ("camera", "picture"),
-        ("find_balls", "x, y [px]"),
-        ("TablePlane", "X, Y [m]\non the table"),
-        ("T_base_table", "p [m]\nin the base"),
-        ("IK, plan", "q(t) [rad]"),
-        ("controller", "u [PWM]"),
-    )
-    for k, (name, out) in enumerate(boxes):
-        ax.text(k + 0.5, 1.22, name, ha="center", va="center", fontsize=9.5, bbox=_BOX)
-        ax.text(k + 0.5, 0.88, out, ha="center", va="top", fontsize=8, color=COLOURS["dark"])
-        if k < 5:
-            _arrow(ax, (k + 0.87, 1.22), (k + 1.13, 1.22))
-    _arrow(ax, (5.5, 0.6), (0.5, 0.6), connectionstyle="arc,angleA=-90,angleB=-90,armA=25,armB=25")
-    again = {"ha": "center", "va": "top", "fontsize": 9, "color": COLOURS["dark"]}
-    ax.text(3.0, 0.2, "the camera sees ball and hand: look again", **again)
-    return figure
-
-
-def _arrow(ax, start, end, **style):
-    ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0} | style)
 
 
 def _sheet(width, height):
@@ -199,8 +170,7 @@ def colour_solids():
     return figure
 
 
-DRAWINGS = {draw.__name__: draw for draw in (picture_to_motors, one_loop, three_loops,
-                                             axis_and_lever, ruler, colour_solids)}  # fmt: skip
+DRAWINGS = {draw.__name__: draw for draw in (one_loop, three_loops, axis_and_lever, ruler, colour_solids)}
 
 
 def main(arguments=None):

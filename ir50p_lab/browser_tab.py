@@ -3,10 +3,14 @@
 The page's own drive keeps files, but a look at it takes 5 ms: the student's folder lies in memory, with a copy there.
 """
 
+import asyncio
 import functools
+import importlib
 import logging
-import shutil
+import os
+import secrets
 import sys
+from importlib.machinery import PathFinder
 from pathlib import Path
 
 from ir50p_lab.errors import LabError
@@ -17,6 +21,8 @@ _LACKING = {
     "serial": "speaks to a board",
     **dict.fromkeys(("loky", "numba"), "makes sweeps quick"),
 }
+WHEN_NEEDED = ("scipy", "pandas", "sympy")  # packages that the page fetches at their first import
+_KEPT = ("results/**/*", "my_robot/**/*", "progress.json")
 
 
 class NotInABrowserError(LabError, ImportError):
@@ -29,28 +35,106 @@ def needs_more(what):
 
 
 class Lacking:
-    """Asked last for a module: names what it would have been for."""
+    """Asked last for a module: fetches what can be fetched, and names what the others would have been for."""
 
     @staticmethod
     def find_spec(name, path=None, target=None):
         """None for a module that is merely not there."""
         if name in _LACKING:
             needs_more(f"{name}, which {_LACKING[name]}, is not loaded")
-        if name in ("pandas", "sympy"):
-            raise NotInABrowserError(f"Write 'import {name}' at the top of this cell and run it again.")
+        return _fetch_package(name) if name in WHEN_NEEDED else None
+
+
+def _fetch_package(name):
+    """Wait for a package of the page's; raises NotInABrowserError in a browser that cannot wait inside a cell."""
+    try:
+        from pyodide.ffi import can_run_sync, run_sync
+    except ImportError:
+        can_run_sync = bool
+    if not can_run_sync():
+        raise NotInABrowserError(f"Write 'import {name}' at the top of this cell and run it again.")
+    run_sync(_loading(name))
+    importlib.invalidate_caches()
+    return PathFinder.find_spec(name)
+
+
+def _loading(name):
+    import pyodide_js
+
+    return pyodide_js.loadPackage(name)
+
+
+def _fetch_behind(result):
+    """After the first cell: the largest package, which the first notebook does without."""
+    _shell().events.unregister("post_run_cell", _fetch_behind)
+    asyncio.get_event_loop().call_later(2, _loading, "scipy")  # s: what the cell shows comes first
+
+
+def _shell():
+    return sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+
+
+class Drive:
+    """The page's drive beside the student's folder in memory: other notebooks, and the next visit, read the drive."""
+
+    def __init__(self, drive, memory):
+        self.drive, self.memory = drive, memory
+        self.stamp, self.same = None, {}  # of the last writing seen; {file: its time in memory when both were equal}
+
+    def fetch(self):
+        """Copy to memory what another notebook has written; one look at the drive if there is nothing new."""
+        mark = self.drive / ".written"
+        stamp = mark.read_text("utf-8") if mark.is_file() else ""
+        if stamp == self.stamp:
+            return
+        self.stamp = stamp
+        for source in _files(self.drive):
+            target = self.memory / source.relative_to(self.drive)
+            content = source.read_bytes()
+            if not target.is_file() or target.read_bytes() != content:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(content)
+            self.same[target] = target.stat().st_mtime_ns
+
+    def keep(self):
+        """Copy to the drive what is new in memory."""
+        new = [path for path in _files(self.memory) if self.same.get(path) != path.stat().st_mtime_ns]
+        for path in new:
+            self.same[path] = path.stat().st_mtime_ns
+            self._write(path.relative_to(self.memory), path.read_bytes())
+        if new:
+            self.stamp = secrets.token_hex(8)
+            self._write(".written", self.stamp.encode())
+
+    def _write(self, name, content):
+        """In one step: writing over a file of the drive can hang."""
+        target = self.drive / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        beside = target.with_name(f".{target.name}.new")
+        beside.write_bytes(content)
+        os.replace(beside, target)
+
+
+def _files(folder):
+    found = (path for pattern in _KEPT for path in folder.glob(pattern))
+    return [path for path in found if path.is_file() and path.suffix != ".pyc" and path.name[0] != "."]
 
 
 @functools.cache
 def quick_home(drive):
-    """The student's folder in memory, filled from the drive's once."""
-    quick = Path.home() / "student"
-    for name in ("results", "my_robot"):
-        if (drive / name).is_dir():
-            shutil.copytree(drive / name, quick / name, dirs_exist_ok=True)
-    quick.mkdir(parents=True, exist_ok=True)
-    return quick
+    """The student's folder in memory: equal to the drive's before each cell, and copied there after it."""
+    memory = Path.home() / "student"
+    memory.mkdir(parents=True, exist_ok=True)
+    copies = Drive(drive, memory)
+    copies.fetch()
+    if shell := _shell():
+        shell.events.register("pre_run_cell", lambda info: copies.fetch())
+        shell.events.register("post_run_cell", lambda result: copies.keep())
+    return memory
 
 
 if IN_BROWSER:
     sys.meta_path.append(Lacking)
+    if shell := _shell():
+        shell.events.register("post_run_cell", _fetch_behind)
     logging.getLogger("matplotlib.font_manager").setLevel("ERROR")  # it lists its fonts each time, in red

@@ -63,10 +63,6 @@ def replace_text(path, text):
         scratch = Path(folder, path.name)
         scratch.write_text(text, encoding="utf-8")
         os.replace(scratch, path)
-    if IN_BROWSER and path.is_relative_to(home()):
-        kept = PROJECT / "notebooks" / path.relative_to(home())
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        replace_text(kept, text)
 
 
 def _bare(text):

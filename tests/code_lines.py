@@ -23,14 +23,14 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "simulation": 456,
     "bench": 2380,
     "identification": 1479,
-    "vision": 2346,
-    "course": 8536,  # without the next two
-    "course/publishing": 469,
+    "vision": 2299,
+    "course": 8708,  # without the next two
+    "course/publishing": 588,
     "course/grading": 0,
     "launcher": 575,
-    "root": 272,
+    "root": 329,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_501, 19_741, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_802, 19_952, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

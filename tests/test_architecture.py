@@ -43,6 +43,7 @@ SUBJECTS_TOO = {
     "torque": {"fitting"},
     "dynamics": {"kinematics"},
     "at_the_bench": {"kinematics", "motion"},
+    "reaching": {"images", "camera", "kinematics", "torque"},
 }
 
 

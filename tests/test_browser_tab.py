@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from ir50p_lab.browser_tab import Lacking, NotInABrowserError
+from ir50p_lab.browser_tab import Drive, Lacking, NotInABrowserError
 from ir50p_lab.home import PROJECT
 
 IN_A_TAB = """
@@ -30,8 +30,29 @@ def test_what_is_not_loaded_is_named_with_its_use(name):
     with pytest.raises(NotInABrowserError, match=f"{name}, which .* On your machine"):
         Lacking.find_spec(name)
     with pytest.raises(NotInABrowserError, match="'import sympy' at the top"):
-        Lacking.find_spec("sympy")
+        Lacking.find_spec("sympy")  # a browser that cannot wait inside a cell
     assert Lacking.find_spec("textwrap") is None and issubclass(NotInABrowserError, ImportError)
+
+
+_AFTER_THE_CELL = """
+from ir50p_lab.browser_tab import Drive
+from ir50p_lab.home import home, PROJECT
+Drive(PROJECT / "notebooks", home()).keep()
+"""
+
+
+def test_two_notebooks_hear_of_each_other(tmp_path):
+    first, second = (Drive(tmp_path / "drive", tmp_path / name) for name in ("first", "second"))
+    for notebook, name in ((first, "_rot_z.py"), (second, "_frames.py"), (first, "_rot_z.py")):
+        notebook.fetch()
+        mine = notebook.memory / "my_robot" / name
+        mine.parent.mkdir(parents=True, exist_ok=True)
+        mine.write_text(f"# of {notebook.memory.name}, longer than {mine.stat().st_size if mine.exists() else 0}")
+        notebook.keep()
+    second.fetch()
+    for name in ("_rot_z.py", "_frames.py"):
+        texts = {(tmp_path / place / "my_robot" / name).read_text() for place in ("drive", "first", "second")}
+        assert len(texts) == 1, texts
 
 
 def run(code, folder, tmp_path):
@@ -48,7 +69,7 @@ def run(code, folder, tmp_path):
 
 def test_what_is_written_survives_a_reload_and_the_rest_says_what_it_needs(tmp_path):
     (tmp_path / "notebooks").mkdir()
-    write = "from ir50p_lab.course import predict\npredict('fk.height', 0.3, 'm')\n"
+    write = f"from ir50p_lab.course import predict\npredict('fk.height', 0.3, 'm')\n{_AFTER_THE_CELL}"
     first = run(write, tmp_path / "notebooks", tmp_path)
     assert "your guess is 0.3 m" in first.stdout, first.stderr
     assert (tmp_path / "notebooks" / "results" / "lab_book.json").exists()

@@ -29,6 +29,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "live_arm.badge": ["badge_of"],
         "live_arm.step_through": ["step_through"],
         "loops.rehearse": ["RehearsalError", "rehearse"],
+        "publishing.take_home": ["take_home"],
         "robot.arm_numbers": ["parts"],
     },
 )

@@ -13,7 +13,7 @@ from time import monotonic
 from ir50p_lab import home
 from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.robot import student_package
-from ir50p_lab.course.robot.catalogue import ORDER, at_work, is_function, written
+from ir50p_lab.course.robot.catalogue import ORDER, at_work, is_function
 
 _FRESH = 0.1  # s: for so long a function that was looked up is used without looking at its file again
 _said = set()
@@ -65,4 +65,4 @@ def _say(name):
 
 
 def __dir__():
-    return [*written(), "done", "progress", "whose"]
+    return [*ORDER, "done", "progress", "whose"]

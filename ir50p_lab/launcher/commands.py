@@ -10,7 +10,7 @@
   python3 -m ir50p_lab report         your lab report: predictions, figures, functions (--name "Your Name")
   python3 -m ir50p_lab try-page       write docs/try/index.html again, README's page to try; then animation: its picture
   python3 -m ir50p_lab site [...]     the course as a site that runs in a browser tab (--pyodide FOLDER|URL)
-  python3 -m ir50p_lab update FOLDER  take over what is yours from an older copy of the course
+  python3 -m ir50p_lab update FOLDER  take over what is yours from an older copy of the course, or a browser tab's ZIP
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
   --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing

@@ -23,6 +23,8 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "ball.colour": ["RED", "Colour"],
         "pinhole": ["Pinhole"],
         "rendering": ["render_scene"],
+        "reaching.budget": ["error_budget"],
+        "reaching.moving": ["Mover"],
         "reaching.plan": ["plan", "reach_pose", "work_area"],
         "reaching.reach": ["Reacher", "reach"],
         "reaching.rendered_bench": ["RenderedBench", "camera_over"],

@@ -17,11 +17,12 @@ from ir50p_lab.course.at_the_bench import drive_views
 from ir50p_lab.course.torque.views import training_run
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import load_arm
-from ir50p_lab.vision import calibrate, camera_over, load_image
 from ir50p_lab.vision import camera as cameras
+from ir50p_lab.vision import camera_over
+from ir50p_lab.vision.board_pose import inverse_transform
 from tests.emulator.virtual import VirtualBoard
+from tests.targets.vision_setup import own_calibration, own_plane
 
-PICTURES = "../data/calibration"
 PORT = Port("emulated", "Mega 2560")
 
 
@@ -47,7 +48,7 @@ class ArmOnATable:
 
 
 class Webcam:
-    """A rendered camera whose pictures pass for photographs; the first is of the board on the table.
+    """A rendered camera whose pictures pass for photographs.
 
     names: of the notebook, which says where the ball lies (or rolls, for the small pictures).
     """
@@ -55,13 +56,11 @@ class Webcam:
     name, simulated = "stand-in for a webcam", False
 
     def __init__(self, seen, names, size=None):
-        self._camera = camera_over(seen, names["rolling" if size else "ball_at"], small=bool(size))
+        self._camera = camera_over(seen, names["rolling" if size else "ball"], small=bool(size))
         self.size = self._camera.size
-        self._first = None if size else load_image(f"{PICTURES}/table/board.jpg")
 
     def read(self):
-        frame, first, self._first = self._camera.read(), self._first, None
-        return frame._replace(simulated=False, image=frame.image if first is None else first)
+        return self._camera.read()._replace(simulated=False)
 
     def close(self):
         self._camera.close()
@@ -97,7 +96,7 @@ def measure():
         bench.give_id()
         save_result("calibration", nominal_calibration(arm), bench)
         save_result("model", identify(training_run(arm), l2=arm.l[1]), bench)
-        save_result("camera", calibrate(f"{PICTURES}/flat", progress=False), bench)
+        save_result("camera", own_calibration(), inverse_transform(own_plane().T_cam_table), bench)
 
 
 def allow_the_cable(board):

@@ -101,7 +101,7 @@ def functions_are_asked_for_in_their_notebook(path, notebook):
                 wanted = task(name)
                 begin = rf"^(?:class {wanted.function}:\n.*?def __init__\(self, |def {wanted.function}\()"
                 defined = re.search(begin + r"([^)]*)\):", cell.source, re.M | re.S)
-                assert tuple(re.findall(r"(?:^|, )(\w+)", defined[1])) == wanted.signature
+                assert tuple(re.findall(r"(?:^|,\s+)(\w+)", defined[1])) == wanted.signature
                 assert "..." in cell.source
                 assert not imported_names(cell.source), "a function is taken with its cell, and may import NumPy alone"
 

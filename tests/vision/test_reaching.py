@@ -373,6 +373,14 @@ def test_a_real_arm_does_not_reach_for_a_rendered_ball():
         assert np.abs(bench.plant.q_true - before).max() < 0.05
 
 
+def test_a_simulated_arm_is_reached_for_without_a_thread(monkeypatch):
+    """In a browser tab there are none."""
+    bench, _, locator = rig()
+    monkeypatch.setattr("concurrent.futures.ThreadPoolExecutor.submit", None)
+    with bench, Reacher(bench, locator, rest=False) as reacher:
+        assert reacher.look()
+
+
 @pytest.mark.timing
 def test_the_loop_goes_on_while_the_eye_looks():
     bench, _, locator = rig()

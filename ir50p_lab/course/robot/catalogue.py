@@ -1,8 +1,5 @@
 """The functions of `my_robot` in the order in which they are written, and where each is asked for."""
 
-from functools import cache
-from pathlib import Path
-
 _TABLE = """
 00 kinematics    rot_z
 01 kinematics    dh_matrix frames forward_kinematics
@@ -35,6 +32,7 @@ IN_NOTEBOOK = {  # functions that stay in their notebook, and the room in which 
     "rule": "loops",
     **dict.fromkeys(("circle", "motor_law", "once_round"), "at_the_bench"),
     **dict.fromkeys(("carry", "cancel", "model", "pushes", "into", "planned"), "torque"),
+    "nearest": "reaching",
     "best_circle": "images",
 }
 _at = {}  # stage of each function that this session works on
@@ -58,18 +56,6 @@ def is_function(name):
 def stays(name):
     """Tell whether a name is that of a function that stays in its notebook."""
     return name in IN_NOTEBOOK
-
-
-@cache
-def is_written(name):
-    """Tell whether a function can be checked today: its Task is in ROOM/functions/NAME.py, its mistakes in NAME.txt."""
-    name = function_of(name)
-    return (Path(__file__).parents[1] / ROOMS[name] / "functions" / f"{name}.py").exists()
-
-
-def written():
-    """Names of the functions that can be checked today."""
-    return tuple(filter(is_written, ORDER))
 
 
 def work_at(name):

@@ -1,7 +1,7 @@
 """Reaching for what the camera sees: look, plan, move, look again and correct; pick and place; follow."""
 
 import contextlib
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
 
 import numpy as np
 
@@ -60,11 +60,12 @@ class Reacher(Mover):
         return job.result()
 
     def _look(self):
-        """A Future of Seen: from another thread if the clock runs meanwhile, else it is done on return."""
-        job = self._pool.submit(self._see)
-        if self.bench.simulated and not getattr(self.bench, "realtime", False):
-            wait([job])
-        return job
+        """A Future of Seen: from another thread if the clock runs meanwhile; else it is done, by this one."""
+        if not self.bench.simulated or getattr(self.bench, "realtime", False):
+            return self._pool.submit(self._see)
+        done = Future()
+        done.set_result(self._see())
+        return done
 
     def _see(self):
         seen = self.locator.look()

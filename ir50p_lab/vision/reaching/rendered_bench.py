@@ -75,6 +75,10 @@ class RenderedBench(Camera):
             balls[number] = self.bench.plant.tip_true + offset
         return balls
 
+    def lay(self, place):
+        """Somebody lays the first ball at `place` (3,) m."""
+        self._lying[0] = place
+
     def read(self):
         """A picture of this moment: Frame."""
         arm, q = self.bench.arm, self.bench.plant.q_true

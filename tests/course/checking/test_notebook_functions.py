@@ -61,6 +61,11 @@ WRONG = [
     ("pushes", "    return theta @ qd", ""),
     ("into", "    return q, qd, np.sign(qd)", ""),
     ("planned", "    return model(plan[0], plan[1], plan[2], plan[1])", ""),
+    ("nearest", "    return hand + (on_line - lens)", ""),
+    ("nearest", "    return (lens + on_line) / 2", ""),
+    ("nearest", "    a = on_line - lens\n    return lens + np.dot(hand - lens, a) / np.linalg.norm(a) * a", ""),
+    ("nearest", "    return lens + np.cross(hand - lens, on_line - lens)", ""),
+    ("nearest", "    a = on_line / np.linalg.norm(on_line)\n    return lens + np.dot(hand - lens, a) * a", ""),
 ]
 GIVEN = {
     "tip": lambda q, l: jacobian(frames(q, l), 3, frames(q, l)[3][:3, 3])[:3],

@@ -15,7 +15,7 @@ from ir50p_lab.course.checking.calling import call, case_in_words
 from ir50p_lab.course.checking.cell import extract
 from ir50p_lab.course.checking.judge_text import CannotTake
 from ir50p_lab.course.checking.tasks import task
-from ir50p_lab.course.robot.catalogue import written
+from ir50p_lab.course.robot.catalogue import ORDER
 
 
 @pytest.fixture(autouse=True)
@@ -245,7 +245,7 @@ def test_a_whole_wrong_answer_is_told(name, words, text, capsys):
     assert words in said and "gufunc" not in said, said
 
 
-@pytest.mark.parametrize("name", [name for name in written() if task(name).cases is not None])
+@pytest.mark.parametrize("name", [name for name in ORDER if task(name).cases is not None])
 def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypatch):
     """With the sentences for known mistakes taken away, the symptom has to speak of what is shown."""
     monkeypatch.setattr(grading, "distortions", lambda task: ())

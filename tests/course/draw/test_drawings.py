@@ -10,7 +10,6 @@ from ir50p_lab.home import PROJECT
 
 FOLDER = PROJECT / "data" / "drawings"
 SHOWN = {
-    "picture_to_motors": ("find_balls", "T_base_table", "u [PWM]", "look again"),
     "one_loop": ("speed, filtered", "limit", "arm"),
     "three_loops": ("controller 1", "controller 3", "one arm"),
     "axis_and_lever": ("axis", "lever", "velocity"),

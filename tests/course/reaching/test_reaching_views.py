@@ -1,21 +1,25 @@
-"""Figures of notebook 18: they say what is simulated, and show the numbers they are given."""
+"""What notebook 18 is given: figures that show their numbers, copies of the arm, clicks that lay a ball."""
 
 import numpy as np
 import pytest
 from matplotlib.text import Text
 
+from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
-from ir50p_lab.course.reaching import views
+from ir50p_lab.course import LiveArm
+from ir50p_lab.course import reaching as views
+from ir50p_lab.course.reaching import arms
+from ir50p_lab.errors import NotMeasuredError, VisionError
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import Seen, TablePlane
-from ir50p_lab.vision.board_pose import inverse_transform
+from ir50p_lab.vision import RenderedBench
 from ir50p_lab.vision.reaching.reach_result import FollowLog
-from ir50p_lab.vision.rendering import bench_camera
 
-CAMERA, T_CAM_BASE = bench_camera()
-T_BASE_CAM = inverse_transform(T_CAM_BASE)
-PLANE = TablePlane(CAMERA, T_CAM_BASE)
-BALL = np.array([0.40, 0.05, 0.03])
+BALL = np.array([0.42, -0.15, 0.03])
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path, monkeypatch):
+    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
 
 
 def text_of(figure):
@@ -23,32 +27,64 @@ def text_of(figure):
     return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
-def test_frames_name_their_parts():
-    board = np.diag([1.0, -1, -1, 1])
-    text = text_of(views.frames_figure(IR50P, rest_pose(IR50P), T_BASE_CAM, BALL, board, True))
-    assert all(name in text for name in ("{0}", "{c}", "{ob}", "board", "rendered picture, simulated arm"))
-    text = text_of(views.frames_figure(IR50P, rest_pose(IR50P), T_BASE_CAM, BALL, board, False))
-    assert "photograph, real arm" in text
+def test_tips_are_drawn_as_the_lens_sees_them_and_along_its_line():
+    goal, lens = np.array([0.4, 0.0, 0.1]), np.array([1.4, 0.0, 0.1])  # it looks along -x
+    tips = goal + 0.001 * np.array([[[5, 2, 3], [5, 0, 0]]])
+    figure = views.looks_figure(tips, goal, lens)
+    seen, along = figure.axes
+    assert np.allclose(seen.lines[1].get_xydata(), [[2, 3]])  # right of the camera is +y of the base
+    assert np.allclose(along.lines[2].get_xydata(), [[-5, 0]])
+    assert "simulated" in text_of(figure)
 
 
-def test_what_is_seen_is_written_beside_it():
-    ball = type("Ball", (), {"x": 300.0, "y": 200.0, "radius": 25.0})
-    image = np.zeros((480, 640, 3), np.uint8)
-    seen = Seen(BALL, ball, image, True)
-    text = text_of(views.seen_figure(seen, IR50P, rest_pose(IR50P), T_BASE_CAM, (310.0, 150.0)))
-    assert "Ball at (300.0, 200.0) px" in text and "(400, 50, 30) mm" in text
-    assert "Ball at" not in text_of(
-        views.seen_figure(Seen(None, None, image, True, "none"), IR50P, rest_pose(IR50P), T_BASE_CAM)
+def test_a_copy_is_reached_for_by_what_it_is_given():
+    def where(bench, watch):
+        return bench.plant.tip_true - watch.balls_true[0]
+
+    there = views.on_copies(where, IR50P, range(2), BALL)
+    assert there.shape == (2, 3) and np.allclose(there[0], there[1])  # both at rest
+
+    def place(bench, watch):
+        return bench.calibration.stderr_slope is not None, watch.scene.T_cam_world[0, 3]
+
+    plain, turned = (
+        views.on_copies(place, IR50P, [3], BALL, calibrated=known, knocked=knocked)[0]
+        for known, knocked in ((False, (0, 0, 0)), (True, (0, 1, 0)))
     )
+    assert not plain[0] and turned[0]
+    assert abs(plain[1] - turned[1]) == pytest.approx(np.sin(np.radians(1)), abs=0.02)  # 1 m or so away
 
 
-def test_the_height_moves_the_reading():
-    xy = CAMERA.project(T_CAM_BASE, BALL)
-    figure, update = views.height_figure(PLANE, BALL, xy)
-    assert "(400.0, 50.0) mm" in update(30.0) and "+0.0 mm off" in text_of(figure)
-    update(0.0)
-    (off,) = (float(word) for word in text_of(figure).split() if word.startswith("+"))
-    assert off == pytest.approx(1e3 * np.linalg.norm(PLANE.to_table(xy, 0.0) - BALL[:2]), abs=0.1)
+def test_a_calibrated_copy_shows_its_angles_within_two_counts():
+    plant = SimulatedBench(IR50P, seed=4, record_to=False).plant
+    line = arms._calibration(plant)
+    plant.place(q := np.array([0.3, 0.5, -0.9]))
+    counts = np.mean([plant.counts() for _ in range(50)], axis=0)
+    assert np.abs(line.counts(q) - counts).max() < 2
+
+
+def test_a_click_lays_the_ball_and_the_hand_follows_what_the_eye_says():
+    bench = SimulatedBench(IR50P, q0=rest_pose(IR50P), record_to=False)
+    watch, hand = RenderedBench(bench, BALL), LiveArm(IR50P, rest_pose(IR50P))
+    answers = [np.array([0.1, 0.2, -0.3]), None]
+    view = views.follow_clicks(hand, watch, views.camera_for(bench), lambda picture, q: answers.pop(0))
+    view._clicked(0.5, 0.5)
+    assert np.allclose(hand.q, [0.1, 0.2, -0.3]) and watch.balls_true[0, 2] == pytest.approx(0.03)
+    assert np.abs(watch.balls_true[0] - BALL).max() > 0.02
+    view._clicked(0.9, 0.9)
+    assert np.allclose(hand.q, rest_pose(IR50P)) and "None" in view.status.value
+
+
+def test_a_camera_of_before_is_refused_with_the_remedy(monkeypatch):
+    known = type("Camera", (), {"T_base_cam": None})
+    monkeypatch.setattr(arms, "load_result", lambda *_, **__: known)
+    with pytest.raises(NotMeasuredError, match="notebook 17"):
+        views.camera_for(None)
+
+
+def test_no_circle_is_no_pixel():
+    with pytest.raises(VisionError, match="no circle"):
+        views.seen_circle(np.zeros((60, 80), dtype=bool), [8, 9])
 
 
 def test_following_shows_how_far_the_tip_is_ahead():

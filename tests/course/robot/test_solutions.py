@@ -109,8 +109,9 @@ def test_from_the_picture_to_the_tip():
     np.testing.assert_allclose(place[:2] / place[2], ball[:2], atol=1e-9)
     np.testing.assert_allclose(mine.pixel_to_plane(K, T_base_cam, pixel, 0.03), ball, atol=1e-9)
     seen = {"K": K, "T_base_cam": T_base_cam, "l": arm.l, "limits": arm.limits, "hue": 0.0, "tolerance": 0.3}
-    q = mine.find_and_reach(rgb, np.zeros(3), **seen, radius=round(radius), above=0.06)
+    seen |= {"radii": range(round(radius) - 3, round(radius) + 4), "ball_radius": 0.03, "above": 0.06}
+    q = mine.find_and_reach(rgb, np.zeros(3), **seen)
     np.testing.assert_allclose(mine.forward_kinematics(q, arm.l), ball + np.array([0, 0, 0.06]), atol=0.003)
     dot = np.full_like(rgb, 120)
     dot[100, 100] = (200, 30, 40)
-    assert mine.find_and_reach(dot, np.zeros(3), **seen, radius=round(radius), above=0.06) is None
+    assert mine.find_and_reach(dot, np.zeros(3), **seen) is None

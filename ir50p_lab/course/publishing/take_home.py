@@ -1,0 +1,63 @@
+"""What is the student's, out of a browser tab and into it: the report and a ZIP as links, a button for a ZIP."""
+
+import base64
+import contextlib
+import io
+import tempfile
+import zipfile
+from datetime import date
+from pathlib import Path
+
+import ipywidgets
+from IPython.display import HTML, display
+
+from ir50p_lab.course.lab_book.update import take_over
+from ir50p_lab.course.publishing.report import report
+from ir50p_lab.home import home
+
+_FOLDERS = ("my_robot", "results")
+
+
+def take_home():
+    """Show two links and a button: your report, a ZIP with all that you wrote and measured, and a ZIP put in here.
+
+    On a laptop `python3 -m ir50p_lab update FILE.zip` takes the ZIP over; a ZIP that a laptop made goes into a tab by
+    the button. Nothing that is here already is overwritten.
+    """
+    today = f"{date.today():%Y-%m-%d}"
+    links = (
+        _link(f"ir50p_report_{today}.html", "text/html", report().encode(), "Your report"),
+        _link(f"ir50p_{today}.zip", "application/zip", packed(), "A ZIP of my_robot and results"),
+    )
+    display(HTML(" · ".join(links)))
+    put_in = ipywidgets.FileUpload(accept=".zip", description="Put a ZIP in", layout={"width": "12em"})
+    said = ipywidgets.Output()
+    put_in.observe(lambda change: _put_in(put_in.value[0], said), "value")
+    display(ipywidgets.VBox([put_in, said]))
+
+
+def packed() -> bytes:
+    """A ZIP with `notebooks/my_robot`, `notebooks/results` and the exercises that are done."""
+    files = [path for name in _FOLDERS for path in (home() / name).rglob("*") if path.is_file()]
+    kept = io.BytesIO()
+    with zipfile.ZipFile(kept, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("notebooks/", "")
+        for path in (*files, *home().glob("progress.json")):
+            if path.suffix != ".pyc":
+                archive.write(path, f"notebooks/{path.relative_to(home()).as_posix()}")
+    return kept.getvalue()
+
+
+def _link(name, kind, content, words):
+    text = base64.b64encode(content).decode()
+    return f'<a download="{name}" href="data:{kind};base64,{text}">{words}</a> ({len(content) / 1000:.0f} kB)'
+
+
+def _put_in(upload, said):
+    with tempfile.TemporaryDirectory() as room, said, contextlib.redirect_stderr(None):
+        file = Path(room, "put_in.zip")
+        file.write_bytes(upload["content"])
+        try:
+            take_over(file)
+        except SystemExit as problem:
+            print(problem)
