@@ -18,7 +18,7 @@ from test_structure import imported_names
 A1, A2 = FOLDER / "A1_errata.ipynb", FOLDER / "A2_further_on.ipynb"
 CELLS = stripped.read(A1).cells
 NUMBER, RIGHT = "reference or name", "looks wrong, is right"
-TO_COME = ("16", "17", "18")  # their links come with the notebooks themselves
+TO_COME = ("16", "18")  # their links come with the notebooks themselves
 
 with (ROOT / "data" / "errata.csv").open(encoding="utf-8", newline="") as file:
     ERRATA = list(csv.DictReader(file))
