@@ -93,7 +93,7 @@ def save_image(path, image, *, rendered=False, quality=95):
     mark.add_text("Comment", MARK)
     marked = {"pnginfo": mark, "comment": MARK} if rendered else {}
     try:
-        picture.save(path, quality=quality, **marked)
+        picture.save(path, quality=quality, subsampling=0, **marked)  # each pixel keeps its own hue
     except (OSError, ValueError) as error:
         raise ImageError(f"{path} cannot be written ({error}): choose another folder, or a name with .png") from None
 

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from file_bench import FileBench, lines
+from until import until
 
 from ir50p_lab.bench import SimulatedBench, background, rest
 from ir50p_lab.bench.rest import rest_pose
@@ -26,13 +27,6 @@ GAINS = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30)}
 
 def pid(**changes):
     return PID(**{**GAINS, **changes}, limit_pwm=255)
-
-
-def until(condition, timeout=10.0):
-    deadline = time.monotonic() + timeout
-    while not condition():
-        assert time.monotonic() < deadline, "nothing happened in time"
-        time.sleep(0.002)
 
 
 class Failing:

@@ -5,20 +5,11 @@ import signal
 import subprocess
 import sys
 import textwrap
-import time
 
 import pytest
+from until import until
 
 from tests.emulator.board_process import BoardProcess
-
-PAUSE = 0.002
-
-
-def until(condition, timeout=20.0):
-    deadline = time.monotonic() + timeout
-    while not condition():
-        assert time.monotonic() < deadline, "nothing happened in time"
-        time.sleep(PAUSE)
 
 
 @pytest.fixture

@@ -16,6 +16,9 @@ CELLS = [
     "panel = live(new_figure(3, 2), lambda a: f'{1 / (1 - a):.2f}', a=(0, 1, 0.1, 0))\ndisplay(panel)\n"
     "panel.controls['a'].value = 1",
     "from ir50p_lab.course import my_robot\nmy_robot",
+    "import numpy as np\nfrom ir50p_lab.course import PictureView\n"
+    "view = PictureView(np.zeros((60, 80), bool), lambda x, y: 1 / x, alt='all dark')\ndisplay(view)\n"
+    "view.canvas._handle_custom_msg({'right': 0, 'up': 0}, [])\nPictureView(np.ones((60, 80), bool), alt='all bright')",
     "from ir50p_lab.course.live_arm import LiveArm\nfrom ir50p_lab.modelling import IR50P\n"
     "from ir50p_lab.controllers import PID\nfrom ir50p_lab.signals import hold\nfrom ir50p_lab.simulation import simulate\n"
     "run = simulate(IR50P, PID(kp=300, limit_pwm=255), hold((0, 0.8, -1)), duration=2, period=0.01, q0=(0, 1, -1.4))\n"

@@ -1,4 +1,4 @@
-"""A scripted student goes through the core of 12 and 13 in one home: wrong answers first, then right ones, to a kept model."""
+"""A scripted student goes through the core of 12, 13 and 16: wrong answers first, then right ones, to a model and a ball."""
 
 import re
 
@@ -19,6 +19,15 @@ WRONG = {
         ("[0, g * c23, g * c23]", "[0, 0, g * c23]", "the shoulder carries the forearm as well"),
         ("Y[joint, 10 + 2 * joint] = qd", "Y[joint, 10 + joint] = qd", "not yet"),
         ("g * c2,", "-g * c2,", "wrong sign"),
+    ],
+    "hue_mask": [
+        ("np.angle(np.exp(1j * (angle - hue)))", "angle - hue", "does your circle have a seam"),
+        ("np.asarray(rgb, dtype=float)", "rgb", "as bytes"),
+        ("<= tolerance", "<= np.radians(tolerance)", "read as degrees"),
+    ],
+    "circle_votes": [
+        ("+ radius", "- radius", "vote outwards"),
+        ("votes[y, x]", "votes[x, y]", "an array is [row, column]"),
     ],
     "fit_percent": [("100 * ", "", "it is a share, from 0 to 1"), ("1 - missed", "missed", "what is missed")],
 }
@@ -65,3 +74,9 @@ def test_a_student_fits_a_model_and_keeps_it(tmp_path):
     assert "my_robot.regressor: yours" in (said := gone_through("13_is_the_model_good", tmp_path))
     assert "Kept: model-1" in said
     assert (tmp_path / "results" / "model-1.model").exists()
+
+
+@pytest.mark.notebook
+def test_a_student_finds_the_ball(tmp_path):
+    said = gone_through("16_images_and_ball", tmp_path)
+    assert "my_robot.circle_votes: yours" in said and "at (407, 212), radius 25 px" in said

@@ -50,6 +50,18 @@ def test_equals_scipy_and_mujoco():
     np.testing.assert_allclose(run.q[-1], data.qpos, atol=1e-8)
 
 
+def test_a_held_pd_command_equals_mujocos():
+    """A command every 10 ms, ten Runge-Kutta steps between."""
+    model = mujoco_model(SMOOTH)
+    data, last = mujoco.MjData(model), np.zeros(3)
+    for _ in range(100):
+        velocity, last = (data.qpos - last) / 0.01, data.qpos.copy()
+        data.qfrc_applied[:] = np.clip(50 * (SET_POINT - data.qpos) - 5 * velocity, -20, 20)
+        mujoco.mj_step(model, data, 10)
+    run = simulate(SMOOTH, PID(kp=50, kd=5, limit=20, filter_hz=np.inf), SET_POINT, duration=1)
+    np.testing.assert_allclose(run.q[-1], data.qpos, atol=1e-6)
+
+
 @pytest.mark.parametrize(
     "arm, rises, settles, errors",
     [

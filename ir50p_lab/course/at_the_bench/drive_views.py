@@ -9,7 +9,7 @@ from ir50p_lab.bench import UNIT, SimulatedBench, connect
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, origin, subplots
-from ir50p_lab.course.lab_book.results import arm_that_answers
+from ir50p_lab.course.lab_book.results import arm_at_rest, arm_that_answers
 from ir50p_lab.errors import BenchError, BoardLostError
 from ir50p_lab.modelling.named_arms import load_arm
 
@@ -18,13 +18,8 @@ _COLOURS = COLOURS["blue"], COLOURS["orange"], COLOURS["green"]
 
 def go(controller, reference, seconds):
     """The loop of notebook 08, on a real arm with the student's calibration. Returns: Recording."""
-    with arm_that_answers("calibration", q0=rest_pose(load_arm())) as bench:
-        next(bench.run(seconds=0.02, record=False))  # where is it?
-        bench.go_to_rest()
-        controller.reset()  # what it remembers of another run would push at once
-        for sample in bench.run(seconds=seconds, reference=reference):
-            bench.drive(controller.step(sample.t, sample.q, sample.reference))
-    return bench.recording
+    with arm_at_rest(load_arm(), "calibration") as bench:
+        return bench.follow(controller, reference, seconds)
 
 
 _STARTS = 0.5 + 1.2 * np.arange(8)  # s, of the pushes

@@ -13,7 +13,7 @@ function render({ model, el }) {
     img.alt = model.get("description");
     img.src = dataUrl(model.get("value"));
   };
-  img.style.cssText = `width:100%;cursor:${model.get("clickable") ? "crosshair" : "default"}`;
+  img.style.cssText = `display:block;width:100%;cursor:${model.get("clickable") ? "crosshair" : "default"}`;
   img.addEventListener("click", (event) => {
     const box = img.getBoundingClientRect();
     model.send({ right: (event.clientX - box.left) / box.width, up: (box.bottom - event.clientY) / box.height });

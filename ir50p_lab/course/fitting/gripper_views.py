@@ -7,7 +7,7 @@ from ir50p_lab.controllers import PID
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.course.fitting.views import kept_motion
-from ir50p_lab.course.lab_book.results import arm_that_answers
+from ir50p_lab.course.lab_book.results import arm_at_rest
 from ir50p_lab.signals import fourier
 
 
@@ -20,9 +20,7 @@ def go(gripped, controller, reference, seconds):
     """The loop of 08, from the rest pose, on the arm that answers, with its gripper: a Recording."""
     from tqdm.auto import tqdm
 
-    with arm_that_answers("calibration", arm=gripped, q0=rest_pose(gripped)) as bench:
-        next(bench.run(seconds=0.02, record=False))
-        bench.go_to_rest()
+    with arm_at_rest(gripped, "calibration") as bench:
         controller.reset()
         samples = bench.run(seconds=seconds, reference=reference)
         for sample in tqdm(samples, total=round(100 * seconds), leave=False, disable=seconds < 30):

@@ -9,7 +9,7 @@ from ir50p_lab.course import my_robot
 from ir50p_lab.course.draw.style import COLOURS, new_figure
 from ir50p_lab.course.fitting.own_model import columns, fit_rows
 from ir50p_lab.course.fitting.views import kept_motion
-from ir50p_lab.course.lab_book.results import arm_that_answers
+from ir50p_lab.course.lab_book.results import arm_at_rest
 from ir50p_lab.errors import UnreachableError
 from ir50p_lab.signals import fourier, quintic
 
@@ -19,9 +19,7 @@ _UNSEEN, _JUDGES = (101, 102), (2, 3, 4)  # seeds of the contest's arms; kept mo
 def follow(arm, controller, reference, seconds):
     """From rest to the beginning of a reference, then along it for so many seconds: a Recording of the latter."""
     to_its_beginning = quintic(rest_pose(arm), np.array(reference(0.0)[0]), duration=4)
-    with arm_that_answers("calibration", arm=arm, q0=rest_pose(arm)) as bench:
-        next(bench.run(seconds=0.02, record=False))
-        bench.go_to_rest()
+    with arm_at_rest(arm, "calibration") as bench:
         bench.follow(controller, to_its_beginning, 5, record=False)
         return bench.follow(controller, reference, seconds)
 

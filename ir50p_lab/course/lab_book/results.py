@@ -3,6 +3,7 @@
 What a bench needs of them (`connect()` takes the calibration) is read in `bench.result_files`; all is written here.
 """
 
+import contextlib
 import dataclasses
 import json
 from datetime import datetime
@@ -10,6 +11,7 @@ from datetime import datetime
 import numpy as np
 
 from ir50p_lab.bench.connect import connect
+from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.result_files import Result, every, folder, newest
 from ir50p_lab.bench.simulated import SimulatedBench
 from ir50p_lab.errors import InputError, NotMeasuredError
@@ -143,6 +145,15 @@ def arm_that_answers(*needs, **options):
         why = f"measure first: {todo}"
     print(f"The simulated arm instead: {why}")
     return connect("simulated", **options)
+
+
+@contextlib.contextmanager
+def arm_at_rest(arm, *needs):
+    """The open bench of `arm_that_answers(*needs)`, with this arm moved to its rest pose."""
+    with arm_that_answers(*needs, arm=arm, q0=rest_pose(arm)) as bench:
+        next(bench.run(seconds=0.02, record=False))  # where is it?
+        bench.go_to_rest()
+        yield bench
 
 
 def _missing(kind, bench):

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ir50p_lab.bench import SimulatedBench, rest_pose
+from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.course import my_robot
-from ir50p_lab.course.lab_book.results import arm_that_answers, load_result, newest_result
+from ir50p_lab.course.lab_book.results import arm_at_rest, load_result, newest_result
 from ir50p_lab.course.torque.views import training_run
 from ir50p_lab.identification import identify
 
@@ -91,10 +91,7 @@ def driven_on_bench(arm, controller, reference, seconds, *, copy_of=None):
     copy_of: Arm whose simulated copy is driven, as one with a load; None: arm.
     """
     bench = SimulatedBench(copy_of or arm, q0=reference(0)[0], record_to=False).open()
-    controller.reset()
-    for sample in bench.run(seconds, reference):
-        bench.drive(controller.step(sample.t, sample.q, sample.reference))
-    record = bench.recording
+    record = bench.follow(controller, reference, seconds)
     return record, SimpleNamespace(t=record.t, q=bench.truth.q, reference=record.reference)
 
 
@@ -113,15 +110,9 @@ def go(arm, controller_of, reference, seconds):
 
     controller_of: function of a theta (3, 20), the one that was measured on that arm.
     """
-    with arm_that_answers("calibration", "model", arm=arm, q0=rest_pose(arm)) as bench:
+    with arm_at_rest(arm, "calibration", "model") as bench:
         theta, whose = model_for(arm, bench)
-        controller = controller_of(theta)
-        next(bench.run(seconds=0.02, record=False))
-        bench.go_to_rest()
-        controller.reset()
-        for sample in bench.run(seconds=seconds, reference=reference):
-            bench.drive(controller.step(sample.t, sample.q, sample.reference))
-    return bench.recording, whose
+        return bench.follow(controller_of(theta), reference, seconds), whose
 
 
 def copy_theta(arm):

@@ -1,11 +1,11 @@
 """The live panel without a browser: buttons, sliders, errors, frames, and what is left behind."""
 
 import threading
-import time
 
 import numpy as np
 import pytest
 import solutions
+from until import until
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
@@ -13,13 +13,6 @@ from ir50p_lab.course.at_the_bench.panel import BenchPanel, live_panel
 from ir50p_lab.errors import InputError, LabError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
-
-
-def until(condition, timeout=60.0):  # s, on a busy machine
-    deadline = time.monotonic() + timeout
-    while not condition():
-        assert time.monotonic() < deadline, "nothing happened in time"
-        time.sleep(0.005)
 
 
 @pytest.fixture

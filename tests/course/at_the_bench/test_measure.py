@@ -12,12 +12,6 @@ from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.modelling import IR50P
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    my_robot._said.clear()
-
-
 def test_a_filter_of_any_library_is_taken():
     def low_pass(x, cutoff_hz, rate_hz):
         stays = np.exp(-2 * np.pi * cutoff_hz / rate_hz)

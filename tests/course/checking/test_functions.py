@@ -17,13 +17,6 @@ from ir50p_lab.course.robot.catalogue import ORDER
 from ir50p_lab.modelling import IR50P
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    my_robot._said.clear()
-    return tmp_path
-
-
 def said(capsys):
     return capsys.readouterr().out
 
@@ -155,7 +148,7 @@ def test_my_robot_may_be_named_in_a_cell(capsys):
     assert my_robot.whose("dh_matrix") == "yours"
 
 
-def test_a_damaged_lab_book_stops_no_check(home, capsys):
+def test_a_damaged_lab_book_stops_no_check(capsys):
     lab_book.path().parent.mkdir()
     lab_book.path().write_text("{")
     give("rot_z", "def rot_z(angle):\n    return np.eye(3)")

@@ -78,11 +78,6 @@ GIVEN = {
 }
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-
-
 def written(name, body):
     """The function with these lines, as a cell of a notebook has it."""
     function = cell(f"def {name}({', '.join(of_notebook(name).signature)}):\n{body}\n", name)

@@ -10,7 +10,7 @@ from ir50p_lab.course import check, my_robot
 from ir50p_lab.course.checking.cell import extract
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.task import Failed, Task, text_of
-from ir50p_lab.course.robot import catalogue, student_package
+from ir50p_lab.course.robot import student_package
 
 
 def fit_line(x, y):
@@ -61,14 +61,6 @@ INTEGRATE = Task(
     cases=lambda: [(swing, np.array([1.0, 0.5]), 0.3, 0.1), (swing, np.array([0.2, 1.0]), 2.0, 0.2)],
     results=("t", "x"),
 )
-
-
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    catalogue._at.clear()
-    my_robot._said.clear()
-    return tmp_path
 
 
 def says(task, old, new):
@@ -160,7 +152,7 @@ def test_an_answer_that_nothing_explains_waits_a_second_at_most():
 ROT_Z = "def rot_z(angle):\n    c, s = np.cos(angle), np.sin(angle)\n    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])"
 
 
-def test_all_files_of_a_function_are_written_or_none(home, capsys):
+def test_all_files_of_a_function_are_written_or_none(capsys):
     (student_package.folder() / "test_rot_z.py").mkdir(parents=True)
     check("rot_z", cell(ROT_Z, "rot_z"))
     assert "could not be kept" in capsys.readouterr().out

@@ -18,13 +18,6 @@ from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.robot.catalogue import ORDER
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    my_robot._said.clear()
-    return tmp_path
-
-
 def sections_of(name):
     """Pairs (heading, text) of a file beside this one; a heading stands behind "# "."""
     text = Path(__file__).with_name(name).read_text(encoding="utf-8")

@@ -5,7 +5,7 @@ import pytest
 import solutions
 from cells import cell
 
-from ir50p_lab.course import check, my_robot
+from ir50p_lab.course import check
 from ir50p_lab.course.checking.tasks import task
 from ir50p_lab.course.dynamics import lump_view
 from ir50p_lab.course.dynamics.functions.velocity_torque import made_up_mass
@@ -15,13 +15,6 @@ from ir50p_lab.modelling import IR50P, Arm, coriolis_matrix, gravity, mass_matri
 
 OTHER = Arm.load("data/arm_example.toml")
 ARMS = pytest.mark.parametrize("arm", [IR50P, OTHER], ids=lambda arm: arm.name)
-
-
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    my_robot._said.clear()
-    return tmp_path
 
 
 def states(count=30):

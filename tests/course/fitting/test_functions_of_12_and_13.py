@@ -10,13 +10,6 @@ from told import told_of_body
 from ir50p_lab.course import my_robot
 from ir50p_lab.identification import regressor as columns_of_the_package
 
-
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    my_robot._said.clear()
-
-
 LINES = "C = np.linalg.inv(A.T @ A)\n    theta = C @ A.T @ y\n    r = y - A @ theta\n    "
 LEFT = "np.sum(r**2) / (len(y) - A.shape[1])"
 WEIGHTS = "    Y[1, 2] = 9.81 * c2\n    Y[1, 3] = 9.81 * c23\n    Y[2, 3] = 9.81 * c23\n"

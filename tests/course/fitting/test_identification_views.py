@@ -116,8 +116,7 @@ def test_cutoff_view(records):
         view.update(60.0)
 
 
-def test_rows_of_a_recording_are_those_of_the_package(records, monkeypatch, tmp_path):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+def test_rows_of_a_recording_are_those_of_the_package(records):
     Y, u, use = fitting.columns(records[0])
     theta, errors = fitting.fit_rows(Y, u, use)
     motion = process(records[0], delay=0.02, slow=0.05)
@@ -139,9 +138,8 @@ def test_a_motion_keeps_the_limits_or_is_none():
     assert fitting.waves(IR50P, x) is None
 
 
-def test_the_gripper_shows_in_what_is_fitted(monkeypatch, tmp_path):
+def test_the_gripper_shows_in_what_is_fitted():
     """Half a minute of its motion with it and without it: its weight at the elbow's column."""
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
     found = []
     for run in (fitting.gripper_run(IR50P), fitting.bare_run(IR50P, PID(1000, 1000, 40, limit_pwm=255)).between(5, 60)):
         found.append(fitting.fit_rows(*fitting.columns(run))[0][2, 3])

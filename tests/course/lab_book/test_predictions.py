@@ -6,12 +6,6 @@ from matplotlib.figure import Figure
 from ir50p_lab.course import lab_book, measured, partners, predict, why
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    return tmp_path
-
-
 def said(capsys):
     return capsys.readouterr().out
 
@@ -124,7 +118,7 @@ def test_a_figure_is_kept_under_its_name(home):
     assert (home / "results" / "figures" / "my_first_arm.png").exists()
 
 
-def test_a_damaged_lab_book_is_named(home):
+def test_a_damaged_lab_book_is_named():
     lab_book.path().parent.mkdir()
     lab_book.path().write_text("[" * 100000)
     with pytest.raises(lab_book.LabBookError, match="rename it"):

@@ -11,7 +11,6 @@ from ir50p_lab.course.publishing import report
 
 
 def test_a_report_of_everything(tmp_path, monkeypatch, capsys):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
     monkeypatch.setenv("IR50P_UNIT", "2")
     partners("Ada", "Blaise")
     predict("fk.height", 0.2, "m")
@@ -41,6 +40,5 @@ def test_a_report_of_everything(tmp_path, monkeypatch, capsys):
     assert text.count("an assistant explained atan2") == 1
 
 
-def test_an_empty_report_says_so(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+def test_an_empty_report_says_so():
     assert report.report().count("Nothing yet.") >= 4

@@ -1,7 +1,6 @@
 """The badge of a view: whose code draws or moves the arm."""
 
 import numpy as np
-import pytest
 import solutions
 from cells import cell
 
@@ -15,11 +14,6 @@ STUB = "def frames(q, l):\n    ...\n    return np.array([np.eye(4)] * 4)"
 WRITTEN = STUB.replace("    ...\n", "")
 DRAWN = "def drawn_by(q):\n    return frames(q, [0.3, 0.2, 0.4])"
 FOLLOW = "def follow(p, q_now):\n    poses = my_robot.inverse_kinematics(p, l)\n    return poses[0]"
-
-
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
 
 
 def test_what_is_not_written_yet_is_not_yours():

@@ -6,7 +6,6 @@ import json
 import os
 import shutil
 import subprocess
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,6 +13,7 @@ import numpy as np
 import pytest
 from ipywidgets.embed import dependency_state, embed_data
 from PIL import Image
+from until import until
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
@@ -224,13 +224,6 @@ def test_the_loop_of_nine_lines_feeds_the_view(heard, tmp_path):
     shown = np.frombuffer(view.track, "<f4").reshape(-1, view.shape["columns"])[-1, first : first + 3]
     np.testing.assert_allclose(forward_kinematics(IR50P, shown), path, atol=1e-5)
     assert sum("live" in message for message, _ in heard) >= 10
-
-
-def until(true, seconds=10):
-    deadline = time.monotonic() + seconds
-    while not true():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
 
 
 @pytest.mark.parametrize("wrong", [None, np.zeros((3, 4, 4)), np.zeros((4, 16)), [[1, 2], [3]]])

@@ -70,8 +70,7 @@ class Mine:
         return 400 * (reference[0] - q) + [0, 60, 30]
 
 
-def test_any_controller_may_enter_and_attempts_are_kept(tmp_path, monkeypatch, capsys):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+def test_any_controller_may_enter_and_attempts_are_kept(capsys):
     student = solutions.load().PID
     first, second = jury.contest(Mine(), "my own law"), jury.contest(student(**TUNED), "tuned")
     assert not first.won and second.value < first.value
@@ -83,9 +82,8 @@ def test_any_controller_may_enter_and_attempts_are_kept(tmp_path, monkeypatch, c
     assert jury.score(student(**TUNED), kept[1]["seeds"]).value == pytest.approx(kept[1]["score"])
 
 
-def test_who_stops_on_the_way_has_lost_an_attempt(tmp_path, monkeypatch):
+def test_who_stops_on_the_way_has_lost_an_attempt():
     """Else a class could break off on an unlucky arm, unseen, until nine lucky ones come."""
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
 
     class BreaksOff(Mine):
         def step(self, t, q, reference):

@@ -41,8 +41,7 @@ def test_sliders_move_the_students_gains():
         np.testing.assert_array_equal(view.recording.u, contest.drive(wanted, contest.PRACTICE[0], IR50P)[1].u)
 
 
-def test_history_shows_every_attempt_and_the_rules(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
+def test_history_shows_every_attempt_and_the_rules():
     contest_views.history()  # of nothing
     scores = [8.0, 3.0, 1e6, 0.9]
     for value in scores:

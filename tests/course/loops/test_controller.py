@@ -17,15 +17,6 @@ from ir50p_lab.simulation import simulate
 ALL = (*STAGES["PID"], "PID")
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    catalogue._at.clear()
-    my_robot._said.clear()
-    yield tmp_path
-    catalogue._at.clear()  # a test of another file, in this process, works on no stage
-
-
 def edited(stage, *edits):
     """The course's solution of a stage with some lines changed."""
     text = task(stage).solution_text

@@ -13,12 +13,6 @@ SUM = "return fv * qd + np.sign(qd) * dry + offset"
 MOTOR = "gain * u_pwm - damping * qd"
 
 
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    my_robot._said.clear()
-
-
 RIGHT = [
     ("friction_torque", SUM, "return offset + fv * qd + np.where(qd == 0, 0, np.copysign(dry, qd))"),
     ("friction_torque", SUM, "return np.array([fv[i] * qd[i] + np.sign(qd[i]) * dry[i] + offset[i] for i in range(3)])"),

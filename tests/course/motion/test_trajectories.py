@@ -40,9 +40,8 @@ def test_other_right_answers_are_taken(name, old, new):
 
 
 @pytest.mark.parametrize("name", ["rk4_step", "integrate"])
-def test_the_small_test_of_a_function_of_functions_runs(name, tmp_path, monkeypatch):
+def test_the_small_test_of_a_function_of_functions_runs(name, tmp_path):
     """What is written beside the student's function is Python, and holds."""
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
     calls = ("rk4_step",) if name == "integrate" else ()
     student_package.keep(Source(name, solutions.source(name), calls), task(name), task)
     text = (tmp_path / "my_robot" / f"test_{name}.py").read_text(encoding="utf-8")
@@ -59,9 +58,8 @@ def test_the_last_honey_is_too_thick_for_the_step():
     assert (growth[:3] < 1).all() and growth[3] > 1
 
 
-def test_a_badge_follows_what_a_function_calls_beside_my_robot(tmp_path, monkeypatch):
+def test_a_badge_follows_what_a_function_calls_beside_my_robot():
     """A function that uses my_robot and another that is not written: the weaker of both is said."""
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
     text = "def unwritten(q):\n    ...\n\n\ndef moves(q):\n    return my_robot.rot_z(unwritten(q))\n"
     assert badge_of(cell(text, "moves", {"my_robot": my_robot})) == "not written yet"
 

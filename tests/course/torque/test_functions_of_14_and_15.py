@@ -5,14 +5,6 @@ import re
 import pytest
 from told import told_of_body
 
-from ir50p_lab.course import my_robot
-
-
-@pytest.fixture(autouse=True)
-def home(tmp_path, monkeypatch):
-    monkeypatch.setenv("IR50P_HOME", str(tmp_path))
-    my_robot._said.clear()
-
 
 def law(v="qdd + kd * (rate - qd) + kp * (place - q)", u="model(q, qd, v)", read="place, rate, qdd = reference"):
     return f"{read}\n    v = {v}\n    return {u}"
