@@ -50,8 +50,8 @@ class _Exporter(HTMLExporter):
 def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
     """Write a notebook as `folder`/NAME.html, and NAME.pdf where a browser (Chromium, Chrome, Edge) is found.
 
-    Args: notebook: path of an .ipynb, or of a page of text (.md); run: run it first, in its own folder; else its stored outputs are taken;
-    code: with the cells' code; title: of the page, else the notebook's name.
+    Args: notebook: path of an .ipynb, or of a page of text (.md); run: run it first, in its own folder; else its stored
+    outputs are taken; code: with the cells' code; title: of the page, else the notebook's name.
     Returns: the paths written. Raises InputError if there is no such notebook, LabError if a cell fails.
     """
     notebook, folder = Path(notebook), Path(folder)
