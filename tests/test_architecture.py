@@ -39,6 +39,7 @@ FINDERS = {"ir50p_lab.course.checking.tasks", "ir50p_lab.course.checking.numbers
 SUBJECTS = {"modelling", "signals", "controllers", "simulation", "bench", "identification", "vision"}
 #: What else a subject builds on: the motion that its model is fitted to; frames and Jacobian of the arm's links; 11's circle.
 SUBJECTS_TOO = {
+    "camera": {"images"},
     "torque": {"fitting"},
     "dynamics": {"kinematics"},
     "at_the_bench": {"kinematics", "motion"},

@@ -1,5 +1,6 @@
 """The cells with which a student measures a real arm and a webcam: what they keep counts for that board."""
 
+import shutil
 from pathlib import Path
 
 import nbformat
@@ -14,9 +15,10 @@ from ir50p_lab.course import my_robot, save_result
 from ir50p_lab.course.at_the_bench import measure_views
 from ir50p_lab.course.lab_book.results import newest_result
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import Calibration, PictureFolder, calibrate
+from ir50p_lab.vision import Calibration, PictureFolder, TablePlane, calibrate
+from ir50p_lab.vision.rendering import CAMERA_BENCH
 
-PICTURES = Path(__file__).parents[2] / "data/calibration/flat"
+PICTURES = Path(__file__).parents[2] / "data/calibration"
 
 
 def cell(notebook, name):
@@ -69,14 +71,26 @@ def test_calibration_of_a_real_arm(board, monkeypatch):
     assert np.all(off < 0.01 * np.array(truth.slope)) and np.all(off < 4 * np.array(bench.calibration.stderr_slope))
 
 
-def test_calibration_of_a_webcam(board, monkeypatch):
-    """Twenty photographs, one a key press, make a camera that counts for this board."""
-    pressed = []
+def test_calibration_of_a_webcam(board, monkeypatch, tmp_path):
+    """Photographs, one a key press, make a camera that counts for this board, and the last says where it stands."""
+    pressed, folder = [], tmp_path / "seen"
+    shutil.copytree(PICTURES / "flat", folder)
+    shutil.copy(PICTURES / "table/board.jpg", folder / "z.jpg")
     monkeypatch.setattr("builtins.input", pressed.append)
-    monkeypatch.setattr(ir50p_lab.vision, "open_camera", lambda number: PictureFolder(PICTURES))
-    names = {"calibrate": calibrate, "save_result": save_result}
-    exec(cell("17", "camera-yours").replace("my_square = None", "my_square = 0.025"), names)
-    exec(cell("17", "camera-yours-kept"), names)
+    monkeypatch.setattr(ir50p_lab.vision, "open_camera", lambda number: PictureFolder(folder))
+    lies = np.diag([1.0, -1, -1, 1])
+    lies[:3, 3] = 0.32, 0.08, 0
+    names = {
+        "calibrate": calibrate,
+        "save_result": save_result,
+        "np": np,
+        "TablePlane": TablePlane,
+        "T_base_board": lies,
+    }
+    exec(cell("17", "pixel-webcam").replace("my_square = None", "my_square = 0.025"), names)
+    exec(cell("17", "pixel-webcam-kept"), names)
     kept = newest_result("camera", opened(board))
-    assert len(pressed) == 20 and not kept.simulated
-    assert Calibration.load(kept.path).rms < 0.15
+    assert len(pressed) == 21 and not kept.simulated
+    camera = Calibration.load(kept.path)
+    assert camera.rms < 0.15
+    np.testing.assert_allclose(camera.T_base_cam[:3, 3], CAMERA_BENCH, atol=3e-3)

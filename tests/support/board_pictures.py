@@ -5,7 +5,7 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
-from ir50p_lab.course.board_poses import board_poses
+from ir50p_lab.course.camera.board_poses import board_poses
 
 K = np.array([[700.0, 0, 325], [0, 702, 236], [0, 0, 1]])
 LENS = np.array([-0.25, 0.08, 0.001, -0.0005, 0.0])

@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 
-from ir50p_lab.course.board_poses import board_poses
+from ir50p_lab.course.camera.board_poses import board_poses
 from ir50p_lab.vision import Checkerboard, Pinhole, calibrate, calibrate_corners
 from tests.support.board_pictures import painted_set
 from tests.targets.rows import Row

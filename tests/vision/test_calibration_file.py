@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from board_pictures import SIZE, corner_sets, painted_set
 
-from ir50p_lab.course.board_poses import board_poses
+from ir50p_lab.course.camera.board_poses import board_poses
 from ir50p_lab.errors import CalibrationError, InputError
 from ir50p_lab.vision import Calibration, Checkerboard, calibrate, calibrate_corners
 from ir50p_lab.vision.pinhole import as_pinhole

@@ -1,10 +1,57 @@
-"""Figures of notebook 17: what a hole does, which pictures a calibration used, how a bent board shows."""
+"""Figures of notebook 17: a grid on the table, two triangles, what a hole does, which pictures a calibration used."""
 
 import numpy as np
+from matplotlib.patches import Circle
 
+from ir50p_lab.course.draw.picture_view import PictureView
 from ir50p_lab.course.draw.pictures import STAMP, show_picture
 from ir50p_lab.course.draw.style import COLOURS, new_figure, subplots
-from ir50p_lab.vision import Checkerboard
+
+
+def grid_figure(picture, H, title="Lines 50 mm apart on the table"):
+    """A picture, and over it the grid of the table that H (3, 3), pixels to places, says. Returns: LabFigure."""
+    figure, ax = subplots(6.4, 5.0, note=STAMP)
+    bare_picture(ax, picture, title)
+    along, across = np.arange(0.20, 0.651, 0.05), np.arange(-0.30, 0.301, 0.05)
+    lines = [([x, x], across[[0, -1]]) for x in along] + [(along[[0, -1]], [y, y]) for y in across]
+    for x, y in lines:
+        u, v, w = np.linalg.solve(H, np.array([x, y, np.ones(2)]))
+        ax.plot(u / w, v / w, color="white", linewidth=0.8)
+    h, w = picture.shape[:2]
+    ax.set(xlim=(-0.5, w - 0.5), ylim=(h - 0.5, -0.5))
+    return figure
+
+
+def circled(picture, circles, alt, colour="white"):
+    """A picture with circles (x, y, radius), px, over it: PictureView."""
+    view = PictureView(picture, alt=alt)
+    view.circles = [(*circle, colour) for circle in circles]
+    return view
+
+
+def triangles_figure(lens, ball):
+    """A lens (3,) m, a ball of 30 mm radius with its centre at (3,) m, and the line of sight. Returns: LabFigure."""
+    away, high, h = np.hypot(*(ball - lens)[:2]), lens[2], ball[2]
+    beyond = h * away / (high - h)
+    figure, wide, near = subplots(9.6, 3.8, cols=2, width_ratios=(1.5, 1))
+    for ax in (wide, near):
+        ax.axhline(0, color=COLOURS["dark"], linewidth=2)
+        ax.fill([0, 0, away], [h, high, h], color=COLOURS["blue"], alpha=0.12, linewidth=0)
+        ax.add_patch(Circle((away, h), 0.03, facecolor="#D4606A", zorder=1))
+        ax.fill([away, away, away + beyond], [0, h, 0], color=COLOURS["orange"], alpha=0.8, linewidth=0)
+        ax.plot([0, away + beyond], [high, 0], color=COLOURS["blue"], linewidth=1.3)
+        ax.plot(away, h, "+", color="white", markersize=9)
+        ax.set(aspect="equal", xlabel="away from the camera [m]")
+        ax.grid(False)
+    wide.plot(0, high, "o", color=COLOURS["dark"])
+    wide.text(0.03, high, "lens", va="center")
+    wide.text(-0.02, (high + h) / 2, f"{1000 * (high - h):.0f} mm", ha="right", fontsize=9)
+    wide.text(away / 2, h + 0.02, f"{1000 * away:.0f} mm", ha="center", fontsize=9)
+    wide.set(xlim=(-0.22, away + 0.12), ylim=(-0.05, high + 0.06), ylabel="height [m]", title="Lens, ball and table")
+    near.text(away - 0.004, 0.015, f"{1000 * h:.0f} mm", ha="right", va="center", fontsize=9)
+    near.text(away + beyond / 2, -0.006, f"{1000 * beyond:.0f} mm", ha="center", va="top", fontsize=9)
+    near.set(xlim=(away - 0.06, away + 0.06), ylim=(-0.03, 0.075), title="The last 12 cm of it")
+    return figure
 
 
 def bare_picture(ax, image, title=""):
@@ -13,33 +60,21 @@ def bare_picture(ax, image, title=""):
     ax.set_axis_off()
 
 
-def pinhole_figure(points):
+def pinhole_figure(**points):
     """Rays through a pinhole and where they cut the plane at Z = 1 (the idea of Figure 3.10). Returns: LabFigure.
 
-    points: up to three {name: (X, Y, Z) m, camera coordinates}; X over Z is drawn, as seen from above.
+    points: up to three by name, (X, Y, Z) m in camera coordinates; X over Z is drawn, as seen from above.
     """
     figure, ax = subplots(7.4, 3.2)
-    far = 1.12 * max(1.1, *(Z for _, _, Z in points.values()))
-    top = max(max(X, X / Z) for X, _, Z in points.values())
-    ax.axhline(0, color=COLOURS["dark"], linewidth=1)
-    ax.axvline(1, color=COLOURS["blue"], linewidth=2)
-    for k, (name, (X, _, Z)) in enumerate(points.items()):
-        colour, end = COLOURS[("orange", "green", "purple")[k]], max(1.0, Z)
-        if k == 0:  # the similar triangles
-            ax.fill([0, 1, 1], [0, 0, X / Z], color=COLOURS["blue"], alpha=0.1)
-            ax.fill([0, Z, Z], [0, 0, X], color=colour, alpha=0.2)
-            ax.plot([Z, Z], [0, X], color=colour, linewidth=1)
-        ax.plot([0, end], [0, X / Z * end], color=colour, linewidth=1, linestyle=("-", "--", ":")[k])
-        ax.plot(Z, X, "o", color=colour, markersize=8 - 2 * k)
-        ax.annotate(name, (Z, X), (-6, 6), textcoords="offset points", ha="right", color=colour, fontweight="bold")
-        ax.plot(1, X / Z, "s", color=COLOURS["blue"], markersize=5, zorder=3)
-    for x in sorted({round(X / Z, 6) for X, _, Z in points.values()}):
-        ax.annotate(f"x = {x:.2f}", (1, x), (6, -13), textcoords="offset points", color=COLOURS["blue"])
-    ax.plot(0, 0, "o", color="white", markeredgecolor=COLOURS["dark"], markersize=9, zorder=3)
-    ax.text(0, -0.04 * top, "hole", ha="left", va="top", fontsize=9)
-    ax.text(1, -0.04 * top, " plane Z = 1", ha="left", va="top", fontsize=9, color=COLOURS["blue"])
-    ax.set(xlim=(-0.03, far), ylim=(-0.2 * top, 1.25 * top), xlabel="Z [m], forward", ylabel="X [m], to the right")
-    ax.set_title("Similar triangles: x is to 1 as X is to Z")
+    ax.axvline(1, color=COLOURS["blue"], linewidth=2, label="the plane Z = 1")
+    for colour, (name, (X, _, Z)) in zip(("orange", "green", "purple"), points.items(), strict=False):
+        end = max(1.0, Z)
+        ax.plot([0, end], [0, X / Z * end], color=COLOURS[colour], linewidth=1)
+        ax.plot(Z, X, "o", color=COLOURS[colour], label=f"{name}, x = {X / Z:.2f}")
+        ax.plot(1, X / Z, "s", color=COLOURS[colour], markersize=5, zorder=3)
+    ax.plot(0, 0, "o", color="white", markeredgecolor=COLOURS["dark"], markersize=9, zorder=3, label="the hole")
+    ax.set(xlabel="Z [m], forward", ylabel="X [m], to the right", title="Seen from above: x is to 1 as X is to Z")
+    ax.legend(fontsize=8, loc="upper left")
     return figure
 
 
@@ -62,33 +97,3 @@ def contact_sheet(images, calibration):
         bare_picture(ax, images[one.index])
         ax.set_title(str(one.reason), fontsize=9, color=COLOURS["orange"], fontweight="bold")
     return figure
-
-
-def board_residual_figure(picture, flat, bent):
-    """One picture, and the residuals by place on the board, mean over the views, as depths: flat model beside bent.
-
-    Args: picture (h, w, 3); flat, bent: Calibration of the same pictures without and with the shape of the board.
-    Returns: LabFigure.
-    """
-    figure, first, *maps = subplots(10.5, 3.1, cols=3, width_ratios=(1.1, 1, 1), note=STAMP)
-    bare_picture(first, picture, "One of the pictures")
-    for ax, one, name in zip(maps, (flat, bent), ("Board taken for flat", "Its shape free"), strict=True):
-        deeper = np.mean([_depths(one, view) for view in one.views], axis=0)
-        board = one.board or bent.board or Checkerboard()  # corners that were given name no board
-        columns, rows = board.pattern
-        place = 1000 * board.square * np.array([-0.5, columns - 0.5, rows - 0.5, -0.5])
-        drawn = ax.imshow(1000 * deeper.reshape(rows, columns), cmap="PuOr", vmin=-1, vmax=1, extent=place)
-        ax.set(xlabel="along the board [mm]", ylabel="down the board [mm]")
-        ax.set_title(f"{name}: rms {one.rms:.3f} px", fontsize=9)
-        ax.grid(False)
-    figure.colorbar(drawn, ax=maps, label="lies deeper by [mm]", shrink=0.8)
-    return figure
-
-
-def _depths(calibration, view):
-    """How much deeper (n,) m each corner of a view would have to lie to be seen where it was found."""
-    step = np.array([0, 0, 1e-4])
-    there = calibration.pinhole.project(view.T_cam_board, view.points + step)
-    back = calibration.pinhole.project(view.T_cam_board, view.points - step)
-    direction = (there - back) / 2e-4  # px/m
-    return (view.residuals * direction).sum(axis=1) / (direction**2).sum(axis=1)

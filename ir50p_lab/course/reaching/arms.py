@@ -33,7 +33,7 @@ def camera_for(bench):
     """
     camera = load_result("camera", bench, course=_course_camera)
     if camera.T_base_cam is None:
-        raise NotMeasuredError("your camera was kept without the place where it stands: run section 8 of notebook 17")
+        raise NotMeasuredError("your camera was kept without the place where it stands: run 'Keep it' of notebook 17")
     return camera
 
 

@@ -4239,7 +4239,7 @@ void main() {
 .la-cursor { position: absolute; left: 0; top: 0; pointer-events: none; }
 .la canvas { display: block; touch-action: none; }
 .la-stage > canvas { width: 100%; outline-offset: -3px; }
-.la-top { position: absolute; inset: 8px 8px auto 10px; display: flex; gap: 8px; align-items: flex-start; pointer-events: none; }
+.la-top { position: absolute; inset: 8px 8px auto 10px; display: flex; flex-wrap: wrap; gap: 4px 8px; align-items: flex-start; pointer-events: none; }
 .la-top > * { pointer-events: auto; }
 .la-badge { white-space: nowrap; padding: 1px 9px; border-radius: 10px; font-weight: 600; background: #e8ecf1; color: #333; }
 .la-badge.yours { background: #0072B2; color: #fff; }
