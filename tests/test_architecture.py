@@ -21,6 +21,7 @@ LAYERS = {
     "vision": {"modelling"},
     "vision.reaching": MODELS | {"controllers", "bench", "vision"},  # the last step, alone
     "course": MODELS | {"controllers", "simulation", "bench", "identification", "vision", "vision.reaching"},
+    "course.grading": {"course"},
     "course.publishing": MODELS | {"bench", "course"},  # commands
 }
 #: Rooms of `course` below all subjects, and what each builds on there.

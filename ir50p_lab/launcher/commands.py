@@ -12,6 +12,7 @@
   python3 -m ir50p_lab site [...]     the course as a site that runs in a browser tab (--pyodide FOLDER|URL)
   python3 -m ir50p_lab update FOLDER  take over what is yours from an older copy of the course, or a browser tab's ZIP
   python3 -m ir50p_lab pack           all that is yours, recordings and reports of bench-test too, as one ZIP to send
+  python3 -m ir50p_lab grade FOLDER   check what a class has handed in: a table (CSV) and a page (HTML)
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
   --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing
@@ -51,6 +52,7 @@ _MODULES = {
     "site": "ir50p_lab.course.publishing.site",
     "update": "ir50p_lab.course.lab_book.update",
     "pack": "ir50p_lab.course.publishing.take_home",
+    "grade": "ir50p_lab.course.grading",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).
 _ENDS = {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}

@@ -35,7 +35,16 @@ def extract(thing, name, earlier, given="", function_arguments=()):
         raise CannotTake(f"this `{called}` is the course's own: write yours, with `def {name}(...)`")
     if called not in (name, "<lambda>"):
         raise CannotTake(f"the function has to be called `{name}`, yours is called `{called}`")
-    text = given + re.sub(rf"\bmy_robot\.(?!{name}\b)(\w+)", r"\1", _cell_text(thing))
+    notebook = getattr(plain_function(thing), "__globals__", {})
+    return cut(_cell_text(thing), name, earlier, given, function_arguments, notebook)
+
+
+def cut(text, name, earlier, given="", function_arguments=(), notebook=()):
+    """Return the Source of a function out of the text of its cell or file, which is not run. See `extract`.
+
+    notebook: variables of the notebook, {name: value}. Raises CannotTake.
+    """
+    text = given + re.sub(rf"\bmy_robot\.(?!{name}\b)(\w+)", r"\1", text)
     tree = ast.parse(text)
     offered = _definitions(tree)
     if name not in offered:
@@ -56,7 +65,7 @@ def extract(thing, name, earlier, given="", function_arguments=()):
         elif one in _BACK_DOORS:
             raise CannotTake(f"it uses `{one}`: your robot stands on plain functions and NumPy alone")
         elif one not in GIVEN and not hasattr(builtins, one):
-            notebook = getattr(plain_function(thing), "__globals__", {})
+            notebook = dict(notebook)
             unused = [argument for argument in function_arguments if argument not in _names_in(offered[name])]
             if unused and callable(notebook.get(one)):
                 raise CannotTake(

@@ -92,10 +92,10 @@ def _wrong(source, wanted, result):
     mark = hashlib.sha256(ast.dump(ast.parse(source.text)).encode()).hexdigest()[:12]
 
     def edit(book):
-        marks = book["attempts"].setdefault(wanted.name, [])
-        if mark not in marks:
-            marks.append(mark)
-        return len(marks)
+        tried = book["attempts"].get(wanted.name, {})
+        marks = tried if isinstance(tried, dict) else dict.fromkeys(tried, "")  # older books have no sentences
+        book["attempts"][wanted.name] = marks | {mark: result.says[:100]}
+        return len(book["attempts"][wanted.name])
 
     tries, says = 0, f"not yet: {with_full_stop(result.says)}"
     try:

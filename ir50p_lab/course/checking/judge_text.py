@@ -4,10 +4,18 @@ import ast
 import inspect
 import linecache
 import textwrap
+from types import ModuleType
+
+import numpy as np
 
 from ir50p_lab.course.checking.explain_error import ROOM
 
 _ALLOWED = {"numpy", "math", "cmath", "collections", "dataclasses", "functools", "itertools", "operator", "typing"}
+#: Names that lead out of the allowed modules, or out of a function: to other modules, or to its frame.
+_DOORS = {name for name, value in vars(np).items() if isinstance(value, ModuleType)}
+_DOORS -= {"linalg", "random", "fft", "polynomial", "typing"}
+_DOORS |= {"os", "sys", "_sys", "builtins", "inspect", "types", "contextlib", "warnings", "attrgetter", "methodcaller"}
+_DOORS |= {"gi_frame", "cr_frame", "tb_frame", "f_back", "f_builtins", "f_globals"}
 
 
 class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never shown as an error)
@@ -15,9 +23,10 @@ class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never s
 
 
 def check_allowed(definitions):
-    """Raise CannotTake where a definition imports what it may not, or changes what is not its own."""
+    """Raise CannotTake where a definition imports or opens what it may not, or changes what is not its own."""
     for node in definitions:
         _refuse_imports(node)
+        _refuse_doors(node)
         _refuse_changes(node)
 
 
@@ -75,14 +84,31 @@ def _refuse_imports(node):
                 raise CannotTake(f"it imports {module}: your robot stands on NumPy alone, and this part is yours")
 
 
+def _refuse_doors(node):
+    """Refuse the inner modules of NumPy and of others (`np.lib`), and names of Python's own in a text."""
+    for one in ast.walk(node):
+        match one:
+            case ast.Import(names=aliases) | ast.ImportFrom(names=aliases):
+                names = {part for alias in aliases for part in alias.name.split(".")}
+            case ast.Attribute(attr=name, value=value) if ast.unparse(value) != "self":
+                names = {name}
+            case ast.Constant(value=str(text)) if "__" in text:
+                raise CannotTake("a text in it holds `__`: names of Python's own are not for a robot")
+            case _:
+                continue
+        for name in sorted(names & _DOORS):
+            raise CannotTake(f"it uses `{name}`: your robot stands on plain functions and NumPy alone")
+
+
 def _refuse_changes(node):
     """Refuse code that assigns to, or reads dunder names of, anything but `self`: `np.allclose = ...`."""
     for one in ast.walk(node):
         if not isinstance(one, ast.Attribute):
             continue
         root = ast.unparse(one).partition(".")[0].partition("[")[0]
+        pythons_own = one.attr.startswith("__") and one.attr.endswith("__")
         opens = one.attr.startswith("__") or not isinstance(one.ctx, ast.Load)
-        if root != "self" and opens:
+        if pythons_own or (root != "self" and opens):
             raise CannotTake(
                 f"it changes or opens `{ast.unparse(one)}`: a function returns its answer and leaves the rest"
             )

@@ -13,14 +13,12 @@ from pathlib import Path
 from ir50p_lab.bench import result_files
 from ir50p_lab.course import lab_book, my_robot
 from ir50p_lab.course.checking import numbers
+from ir50p_lab.course.lab_book.names import title
 from ir50p_lab.course.lab_book.progress import read_progress
 from ir50p_lab.course.robot import student_package
 from ir50p_lab.course.robot.catalogue import ORDER, notebook_of
 from ir50p_lab.home import setting
 
-_NAMES = dict(
-    line.split(": ", 1) for line in Path(lab_book.__file__).with_name("names.txt").read_text("utf-8").splitlines()
-)
 _STYLE = """
 body { font: 16px/1.5 sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #222 }
 table { border-collapse: collapse; margin: 1rem 0 } td, th { padding: 3px 14px 3px 0; text-align: left }
@@ -58,7 +56,7 @@ def _note(one):
 
 def _named(key):
     """Return the title of a number or figure of the lab book: from names.txt, else made from its key."""
-    return _text(_NAMES.get(key, key.replace(".", ", ").replace("_", " ")))
+    return _text(title(key))
 
 
 def _when(text):

@@ -1,0 +1,82 @@
+"""A process group of its own for each student, inside bubblewrap where the system has it."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from ir50p_lab.home import PROJECT, VARIABLE
+
+SECONDS = 120  # for one student, by the clock
+_ENDED = "its process ended, or did not end in time: an endless loop, or more memory than it may have?"
+
+
+def isolation():
+    """The sentence that says how the functions of the class are run."""
+    if bubblewrap():
+        return "Each student's functions run inside bubblewrap: no network, nothing of this machine written, limits."
+    limits = "a limit of time" if os.name == "nt" else "limits of time, memory, processes and files"
+    return f"bubblewrap is not here: each student's functions run in a process of their own, with {limits}."
+
+
+def bubblewrap():
+    """The words before a command that shut it in, or [] where bubblewrap is missing or may not work."""
+    program = shutil.which("bwrap")
+    if program is None:
+        return []
+    shown = {sys.prefix, sys.base_prefix, str(PROJECT), *os.environ.get("PYTHONPATH", "").split(os.pathsep)} - {""}
+    words = [program, "--ro-bind", "/", "/", "--tmpfs", "/tmp", "--tmpfs", str(Path.home())]
+    for path in sorted(map(os.path.realpath, shown)):
+        words += ["--ro-bind", path, path]
+    words += ["--dev", "/dev", "--proc", "/proc", "--unshare-all", "--die-with-parent", "--new-session"]
+    return words if subprocess.run([*words, "true"], capture_output=True, check=False).returncode == 0 else []
+
+
+def verdicts(functions, before, seconds=SECONDS):
+    """{name: (state, sentence)} of {name: text}; before: the words of bubblewrap.
+
+    A function that ends its process, or the time, is wrong; those after it get a process of their own.
+    """
+    found, left = {}, dict(functions)
+    while left:
+        told = _run(left, before, seconds)
+        found |= told
+        left = {name: text for name, text in left.items() if name not in told}
+        if left:
+            name = next(iter(left))
+            found[name] = ("wrong", _ENDED)
+            del left[name]
+    return found
+
+
+def _run(functions, before, seconds):
+    """What a process says until it ends or is ended: {name: (state, sentence)}."""
+    # a home in which nothing is, and one thread
+    command = [*before, sys.executable, "-P", "-m", "ir50p_lab.course.grading.inside"]
+    child = subprocess.Popen(
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | {VARIABLE: os.devnull, "OPENBLAS_NUM_THREADS": "1"},
+        start_new_session=True,
+    )
+    try:
+        said, _ = child.communicate(json.dumps(functions).encode() + b"\n", timeout=seconds)
+    except subprocess.TimeoutExpired:
+        _end(child)
+        said, _ = child.communicate()  # what it said until then
+    finally:
+        _end(child)
+    return {name: (state, says) for name, state, says in map(json.loads, said.splitlines()) if name in functions}
+
+
+def _end(child):
+    """End a process and all that it started."""
+    try:
+        os.killpg(child.pid, signal.SIGKILL) if hasattr(os, "killpg") else child.kill()
+    except ProcessLookupError:
+        pass

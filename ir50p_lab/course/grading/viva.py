@@ -1,0 +1,48 @@
+"""Three questions for a talk of five minutes, from what one student handed in."""
+
+from ir50p_lab.course.lab_book.names import title
+
+
+def questions(submission, verdicts):
+    """Three sentences: on a guess that missed, on the function that took most tries, on a loan."""
+    return [_on_a_guess(submission.predictions), _on_tries(submission.attempts), _on_a_loan(verdicts)]
+
+
+def missed(entry):
+    """By what share of the truth a guess is off, 0 where it is within its tolerance."""
+    off = abs(entry["guess"] - entry["truth"])
+    return off / max(abs(entry["truth"]), 1e-9) if off > entry["within"] * abs(entry["truth"]) else 0.0
+
+
+def _on_a_guess(predictions):
+    """The guess that missed most; one with a reason comes first."""
+    name = max(
+        predictions,
+        key=lambda one: (missed(predictions[one]) > 0, predictions[one]["why"] != "", missed(predictions[one])),
+        default=None,
+    )
+    if name is None or not missed(predictions[name]):
+        return "No guess of yours missed. Of which one were you least sure, and why?"
+    entry = predictions[name]
+    said = f"“{entry['why'][:200]}” Explain that with a sketch." if entry["why"] else "Why is it so?"
+    numbers = f"you guessed {entry['guess']:.4g} {entry['unit']}, it is {entry['truth']:.4g}"
+    return f"{title(name)}: {numbers}. {said}"
+
+
+def _on_tries(attempts):
+    name = max(attempts, key=lambda one: len(attempts[one]), default=None)
+    if name is None:
+        return "Which of your functions took you longest, and what was the idea in the end?"
+    last = next((f" The last time it said: “{one}”" for one in reversed(attempts[name]) if one), "")
+    return f"{name} took {len(attempts[name])} wrong answers.{last} What was it, in the end?"
+
+
+def _on_a_loan(verdicts):
+    for asked, state in (
+        ("{} is on loan: go through its lines, and say what yours lacked.", "loan"),
+        ("{} is not right: where would you look first?", "wrong"),
+    ):
+        for name, (found, _) in verdicts.items():
+            if found == state:
+                return asked.format(name)
+    return "Open the function that you are proudest of: which line holds the idea?"
