@@ -15,6 +15,8 @@ _ALLOWED = {"numpy", "math", "cmath", "collections", "dataclasses", "functools",
 _DOORS = {name for name, value in vars(np).items() if isinstance(value, ModuleType)}
 _DOORS -= {"linalg", "random", "fft", "polynomial", "typing"}
 _DOORS |= {"os", "sys", "_sys", "builtins", "inspect", "types", "contextlib", "warnings", "attrgetter", "methodcaller"}
+_DOORS |= {"save", "savez", "savez_compressed", "savetxt", "tofile", "dump", "memmap", "DataSource"}  # files
+_DOORS |= {"load", "loadtxt", "genfromtxt", "fromfile", "fromregex"}
 _DOORS |= {"gi_frame", "cr_frame", "tb_frame", "f_back", "f_builtins", "f_globals"}
 
 
