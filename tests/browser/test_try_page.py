@@ -5,6 +5,7 @@ from PIL import Image
 
 from ir50p_lab.course.publishing.animation import PICTURE
 from ir50p_lab.course.publishing.try_page import MADE_FROM, PAGE, fingerprint
+from ir50p_lab.modelling import IR50P, inverse_kinematics
 
 
 def test_it_was_made_from_what_is_here():
@@ -22,7 +23,37 @@ def test_the_moving_picture_moves_and_is_small():
     assert PICTURE.stat().st_size < 2e6
 
 
-def test_it_turns_drags_and_plays_with_the_network_off_and_nothing_plays_by_itself(page):
+def test_the_first_view_plays_by_itself_and_takes_the_ball_along(page):
+    page.goto(PAGE.as_uri())
+    page.wait_for_function("() => document.querySelector('.la')?.liveArm.player.time > 0.1", timeout=60_000)
+    for size in ({"width": 1366, "height": 768}, {"width": 390, "height": 844}):
+        page.set_viewport_size(size)
+        button = page.get_by_label("play or pause").first.bounding_box()
+        assert button["y"] + button["height"] < size["height"], size
+        tip, menu = (page.locator(one).first.bounding_box() for one in (".la-tip", ".la-layers summary"))
+        assert max(tip["x"] + tip["width"], menu["x"] + menu["width"]) < size["width"], size
+    at_the_end = """() => {
+        const { player, scene } = document.querySelector('.la').liveArm;
+        player.pause();
+        player.seek(player.track.end);
+        return [...scene.layers.all.ball.position].map((v, k) => v - scene.tipAt[k]);
+    }"""
+    assert page.evaluate(at_the_end) == pytest.approx([0, 0, 0], abs=1e-9)
+
+
+def test_three_play_by_one_button_and_the_tip_says_how_far_it_is(page):
+    page.emulate_media(reduced_motion="reduce")
+    page.goto(PAGE.as_uri())
+    page.get_by_role("button", name="all three").click()
+    times = "() => [...document.querySelectorAll('.la')].map((box) => box.liveArm.player.time)"
+    page.wait_for_function(f"() => ({times})().slice(2).every((time) => time > 0.1)")
+    assert page.get_by_text("mm from the middle of the ball").is_visible()
+    (q,) = [list(q) for q in inverse_kinematics(IR50P, (0.42, -0.15, 0.03)).q if q[2] < 0][:1]
+    page.evaluate("(q) => document.querySelectorAll('.la')[1].liveArm.pose(q)", q)
+    assert page.get_by_text("You touch it").is_visible()
+
+
+def test_it_turns_drags_and_plays_with_the_network_off(page):
     asked = []
     page.on("request", lambda request: asked.append(request.url))
     page.context.set_offline(True)

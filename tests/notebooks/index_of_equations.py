@@ -33,14 +33,14 @@ def equations(text):
 def labels(text):
     """Tables and figures named in a text: {"Table 1.1", "Figure 1.8", ...}."""
     found = set()
-    for kind, first, last in re.findall(
-        r"(Table|Fig(?:ure)?)s? (\d(?:\.\d+)?)(?:[a-z](?:,[a-z])?)?(?:-(\d\.\d+))?", text
+    number = r"\d(?:\.\d+)?[a-z]?"
+    for kind, group in re.findall(
+        rf"(Table|Fig(?:ure)?)s? ({number}(?:(?:, | and | to |,|-)(?:{number}|[a-z]\b))*)", text
     ):
         kind = "Table" if kind == "Table" else "Figure"
-        found.add(f"{kind} {first}")
-        if last:
-            chapter, a = first.split(".")
-            found |= {f"{kind} {chapter}.{k}" for k in range(int(a), int(last.split(".")[1]) + 1)}
+        found |= {f"{kind} {one}" for one in re.findall(r"\d(?:\.\d+)?", group)}
+        for chapter, first, last in re.findall(r"(\d)\.(\d+)(?:-| to )\1\.(\d+)", group):
+            found |= {f"{kind} {chapter}.{k}" for k in range(int(first), int(last) + 1)}
     return found
 
 
@@ -111,7 +111,7 @@ def text():
     ]
     for thesis, what, home, reason, *places in rows():
         shown = [", ".join(place) for place in places]
-        shown[0] = shown[0] or f"*{reason}*"
+        shown[0] = shown[0] or (f"*{reason}*" if reason else "")
         lines.append(f"| {thesis} | {what} | {home} | " + " | ".join(shown) + " |")
     return "\n".join(lines) + "\n"
 

@@ -25,7 +25,7 @@ def main():
 
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=find_browser(), args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 768, "height": 900})
+        page = browser.new_page(viewport={"width": 768, "height": 900}, reduced_motion="reduce")  # no play by itself
         page.goto(PAGE.as_uri())
         page.wait_for_function(f"() => {_VIEW}?.scene.width > 0", timeout=60_000)
         page.evaluate(f"() => {{ {_VIEW}.scene.soon = () => {{}}; }}")  # no coarse pictures between

@@ -13,7 +13,8 @@ from ir50p_lab.home import PROJECT
 
 FOLDER = PROJECT / "docs" / "try"
 NOTEBOOK, PAGE, MADE_FROM = FOLDER / "try.ipynb", FOLDER / "index.html", FOLDER / "made_from.txt"
-_SOURCES = (NOTEBOOK, BUNDLE, Path(pages.__file__), Path(pictures.__file__))
+_STYLE, _SCRIPT = FOLDER / "try.css", FOLDER / "try.js"
+_SOURCES = (NOTEBOOK, _STYLE, _SCRIPT, BUNDLE, Path(pages.__file__), Path(pictures.__file__))
 
 
 def fingerprint():
@@ -24,7 +25,10 @@ def fingerprint():
 def main():
     """Run the notebook, write the page and what it was made from."""
     (made,) = pages.export(NOTEBOOK, FOLDER, pdf=False, code=False, title="The IR50P lab book: a page to try")
-    made.replace(PAGE)
+    page, style, script = (path.read_text(encoding="utf-8") for path in (made, _STYLE, _SCRIPT))
+    page = page.replace("</style></head>", f"{style}</style></head>", 1)
+    PAGE.write_text(page.replace("</body>", f"<script type='module'>{script}</script></body>"), encoding="utf-8")
+    made.unlink()
     MADE_FROM.write_text(fingerprint() + "\n", encoding="utf-8")
     print(f"{PAGE}: {PAGE.stat().st_size / 1e6:.1f} MB")
 
