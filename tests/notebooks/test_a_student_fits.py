@@ -9,7 +9,8 @@ import stripped
 from minutes import core_of
 from notebook_runner import FOLDER, run_notebook
 
-from ir50p_lab.course.robot.catalogue import is_function
+from ir50p_lab.course.checking.tasks import of_notebook
+from ir50p_lab.course.robot.catalogue import is_function, stays
 
 #: Of each function: what the student first writes for a part of the solution, and what is said of it.
 WRONG = {
@@ -32,22 +33,30 @@ WRONG = {
 }
 
 
-def gone_through(name, home):
-    """Outputs of the core of a notebook, as text, with each function first written wrongly, then rightly."""
+def gone_through(name, home, wrong=WRONG, first=()):
+    """Outputs of the core of a notebook, as text, with each function first written wrongly, then rightly.
+
+    first: earlier functions that the student has written before.
+    """
     notebook = stripped.read(FOLDER / f"{name}.ipynb")
-    cells, expected = [], []
+    checked = [
+        f'from ir50p_lab.course import check\n\n\n{solutions.source(one)}\n\ncheck("{one}", {one})' for one in first
+    ]
+    cells, expected = list(map(nbformat.v4.new_code_cell, checked)), []
     for cell in core_of(notebook.cells):
-        asked = re.match(r'.*^check\("(\w+)", \w+\)', cell.source, re.M | re.S)
+        asked = re.match(r'.*^(?:\w+ = )?check\("(\w+)", [a-z]\w+\)', cell.source, re.M | re.S)
         if cell.cell_type == "code" and asked and is_function(asked[1]):
             right = solutions.source(asked[1])
             imports = "".join(line + "\n" for line in cell.source.splitlines() if line.startswith("from "))
-            for old, new, words in WRONG[asked[1]]:
+            for old, new, words in wrong[asked[1]]:
                 assert old in right
                 spoilt = f'{imports}{right.replace(old, new)}\n\ncheck("{asked[1]}", {asked[1]})'
                 cells.append(nbformat.v4.new_code_cell(spoilt))
                 expected.append(words)
             cell.source = f'{imports}{right}\n\ncheck("{asked[1]}", {asked[1]})'
             expected.append(f"from now on my_robot.{asked[1]} is this")
+        elif cell.cell_type == "code" and asked and stays(asked[1]):
+            cell.source = f'{of_notebook(asked[1]).solution_text}\n\n{asked[1]} = check("{asked[1]}", {asked[1]})'
         cells.append(cell)
     notebook.cells = cells
     run = run_notebook(notebook, variables={"IR50P_HOME": str(home)}, push=False)

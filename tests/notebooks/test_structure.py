@@ -40,7 +40,7 @@ def test_there_are_notebooks():
 
 CLAIM = re.compile(r"^\s*(?:assert |claim\()", re.M)
 SHOWS = re.compile(
-    r"^(?:print|predict|measured|claim|check|live|note|keep|Image)\(|^    print\(|\.progress\(\)|^[\w, ]+ = (?:check|vision\.open_camera)\(",
+    r"^(?:print|predict|measured|claim|check|live|note|keep|Image)\(|^    print\(|\.progress\(\)|^[\w, ]+ = (?:check|(?:vision\.)?open_camera)\(",
     re.M,
 )
 
