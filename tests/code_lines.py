@@ -25,12 +25,12 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "identification": 1479,
     "vision": 2299,
     "course": 8698,  # without the next two
-    "course/publishing": 592,
+    "course/publishing": 601,
     "course/grading": 0,
-    "launcher": 575,
+    "launcher": 576,
     "root": 329,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_796, 19_850, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_806, 19_910, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

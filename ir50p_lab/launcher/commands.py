@@ -11,6 +11,7 @@
   python3 -m ir50p_lab try-page       write docs/try/index.html again, README's page to try; then animation: its picture
   python3 -m ir50p_lab site [...]     the course as a site that runs in a browser tab (--pyodide FOLDER|URL)
   python3 -m ir50p_lab update FOLDER  take over what is yours from an older copy of the course, or a browser tab's ZIP
+  python3 -m ir50p_lab pack           all that is yours, recordings and reports of bench-test too, as one ZIP to send
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
   --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing
@@ -49,6 +50,7 @@ _MODULES = {
     "animation": "ir50p_lab.course.publishing.animation",
     "site": "ir50p_lab.course.publishing.site",
     "update": "ir50p_lab.course.lab_book.update",
+    "pack": "ir50p_lab.course.publishing.take_home",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).
 _ENDS = {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}

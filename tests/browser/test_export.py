@@ -1,6 +1,7 @@
 """Exported pages: every picture is there, formulas are drawn, and nothing is fetched from anywhere."""
 
 import re
+from pathlib import Path
 
 import nbformat
 import pytest
@@ -90,3 +91,16 @@ def test_stored_outputs_are_taken_as_they_are(tmp_path):
 def test_formulas_become_mathml_with_their_latex_beside_it(latex):
     found = mathml(latex)
     assert found.startswith("<math") and "alttext=" in found
+
+
+def test_the_page_for_the_wall_is_one_page_of_paper(tmp_path, browser):
+    page, paper = export(Path(__file__).parents[2] / "docs" / "on_the_wall.md", tmp_path)
+    assert "In an emergency" in page.read_text(encoding="utf-8")
+    assert len(re.findall(rb"/Type\s*/Page\b", paper.read_bytes())) == 1
+
+
+def test_on_paper_the_hints_are_open(tmp_path, browser):
+    hint = "<details><summary>Hint</summary>" + 90 * "The law of cosines.<br>" + "</details>"
+    nbformat.write(nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(hint)]), tmp_path / "a.ipynb")
+    _, paper = export(tmp_path / "a.ipynb", tmp_path)
+    assert len(re.findall(rb"/Type\s*/Page\b", paper.read_bytes())) > 1

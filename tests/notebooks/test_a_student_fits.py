@@ -1,4 +1,4 @@
-"""A scripted student goes through the core of 12, 13 and 16: wrong answers first, then right ones, to a model and a ball."""
+"""A scripted student goes through the core of 12, 13, 16 and 17: wrong answers first, then right ones, to a model and a ball."""
 
 import re
 
@@ -9,7 +9,8 @@ import stripped
 from minutes import core_of
 from notebook_runner import FOLDER, run_notebook
 
-from ir50p_lab.course.robot.catalogue import is_function
+from ir50p_lab.course.checking.tasks import of_notebook
+from ir50p_lab.course.robot.catalogue import is_function, stays
 
 #: Of each function: what the student first writes for a part of the solution, and what is said of it.
 WRONG = {
@@ -28,26 +29,43 @@ WRONG = {
         ("+ radius", "- radius", "vote outwards"),
         ("votes[y, x]", "votes[x, y]", "an array is [row, column]"),
     ],
+    "homography": [
+        ("-X * u, -X * v", "X * u, X * v", "the first row of a point have the wrong sign"),
+        ("u, v = pixels[k]", "v, u = pixels[k]", "a pixel is (column, row)"),
+    ],
+    "pixel_to_plane": [
+        ("height - camera[2]", "camera[2] - height", "it goes the other way along the line"),
+        ("pixel[0], pixel[1]", "pixel[1], pixel[0]", "a pixel is (column, row)"),
+        ("(height - ", "(height / 1000 - ", "at another height than the one asked for"),
+    ],
     "fit_percent": [("100 * ", "", "it is a share, from 0 to 1"), ("1 - missed", "missed", "what is missed")],
 }
 
 
-def gone_through(name, home):
-    """Outputs of the core of a notebook, as text, with each function first written wrongly, then rightly."""
+def gone_through(name, home, wrong=WRONG, first=()):
+    """Outputs of the core of a notebook, as text, with each function first written wrongly, then rightly.
+
+    first: earlier functions that the student has written before.
+    """
     notebook = stripped.read(FOLDER / f"{name}.ipynb")
-    cells, expected = [], []
+    checked = [
+        f'from ir50p_lab.course import check\n\n\n{solutions.source(one)}\n\ncheck("{one}", {one})' for one in first
+    ]
+    cells, expected = list(map(nbformat.v4.new_code_cell, checked)), []
     for cell in core_of(notebook.cells):
-        asked = re.match(r'.*^check\("(\w+)", \w+\)', cell.source, re.M | re.S)
+        asked = re.match(r'.*^(?:\w+ = )?check\("(\w+)", [a-z]\w+\)', cell.source, re.M | re.S)
         if cell.cell_type == "code" and asked and is_function(asked[1]):
             right = solutions.source(asked[1])
             imports = "".join(line + "\n" for line in cell.source.splitlines() if line.startswith("from "))
-            for old, new, words in WRONG[asked[1]]:
+            for old, new, words in wrong[asked[1]]:
                 assert old in right
                 spoilt = f'{imports}{right.replace(old, new)}\n\ncheck("{asked[1]}", {asked[1]})'
                 cells.append(nbformat.v4.new_code_cell(spoilt))
                 expected.append(words)
             cell.source = f'{imports}{right}\n\ncheck("{asked[1]}", {asked[1]})'
             expected.append(f"from now on my_robot.{asked[1]} is this")
+        elif cell.cell_type == "code" and asked and stays(asked[1]):
+            cell.source = f'{of_notebook(asked[1]).solution_text}\n\n{asked[1]} = check("{asked[1]}", {asked[1]})'
         cells.append(cell)
     notebook.cells = cells
     run = run_notebook(notebook, variables={"IR50P_HOME": str(home)}, push=False)
@@ -68,6 +86,8 @@ def test_a_student_fits_a_model_and_keeps_it(tmp_path):
 
 
 @pytest.mark.notebook
-def test_a_student_finds_the_ball(tmp_path):
+def test_a_student_finds_the_ball_and_its_place(tmp_path):
     said = gone_through("16_images_and_ball", tmp_path)
     assert "my_robot.circle_votes: yours" in said and "at (407, 212), radius 25 px" in said
+    said = gone_through("17_camera_calibration", tmp_path)
+    assert "✓ the worst of the four, mm beside" in said and "Kept: camera-1" in said

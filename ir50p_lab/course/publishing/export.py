@@ -50,15 +50,16 @@ class _Exporter(HTMLExporter):
 def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
     """Write a notebook as `folder`/NAME.html, and NAME.pdf where a browser (Chromium, Chrome, Edge) is found.
 
-    Args: notebook: path of an .ipynb; run: run it first, in its own folder; else its stored outputs are taken;
-    code: with the cells' code; title: of the page, else the notebook's name.
+    Args: notebook: path of an .ipynb, or of a page of text (.md); run: run it first, in its own folder; else its stored
+    outputs are taken; code: with the cells' code; title: of the page, else the notebook's name.
     Returns: the paths written. Raises InputError if there is no such notebook, LabError if a cell fails.
     """
     notebook, folder = Path(notebook), Path(folder)
     if not notebook.is_file():
         raise InputError(f"there is no notebook {notebook}: give the path of an .ipynb file")
-    nb = nbformat.read(notebook, as_version=4)
-    if run:
+    is_text = notebook.suffix == ".md"
+    nb = _text_page(notebook) if is_text else nbformat.read(notebook, as_version=4)
+    if run and not is_text:
         _run(nb, notebook)
     folder.mkdir(parents=True, exist_ok=True)
     written = [folder / f"{notebook.stem}.html"]
@@ -68,6 +69,10 @@ def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
     if pdf and browser:
         written.append(_print(browser, _page(nb, title, live=False, code=code), folder / f"{notebook.stem}.pdf"))
     return written
+
+
+def _text_page(path):
+    return nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(path.read_text(encoding="utf-8"))])
 
 
 def find_browser():
@@ -101,7 +106,7 @@ def _page(nb, title, *, live, code):
 def _print(browser, page, path):
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "page.html"
-        source.write_text(page, encoding="utf-8")
+        source.write_text(page.replace("<details", "<details open"), encoding="utf-8")  # paper has no click
         options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/profile"]
         target = ["--no-pdf-header-footer", f"--print-to-pdf={path.resolve()}", source.as_uri()]
         done = subprocess.run([browser, *options, *target], capture_output=True, text=True, timeout=120)

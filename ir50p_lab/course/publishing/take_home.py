@@ -1,4 +1,7 @@
-"""What is the student's, out of a browser tab and into it: the report and a ZIP as links, a button for a ZIP."""
+"""What is the student's, out of a browser tab and into it: the report and a ZIP as links, a button for a ZIP.
+
+`python3 -m ir50p_lab pack` writes such a ZIP with all recordings and reports of bench-test: one file to send.
+"""
 
 import base64
 import contextlib
@@ -36,9 +39,9 @@ def take_home():
     display(ipywidgets.VBox([put_in, said]))
 
 
-def packed() -> bytes:
-    """A ZIP with `notebooks/my_robot`, `notebooks/results` and the exercises that are done."""
-    files = [path for name in _FOLDERS for path in (home() / name).rglob("*") if path.is_file()]
+def packed(folders=_FOLDERS) -> bytes:
+    """A ZIP with the folders named of `notebooks/`, and the exercises that are done."""
+    files = [path for name in folders for path in (home() / name).rglob("*") if path.is_file()]
     kept = io.BytesIO()
     with zipfile.ZipFile(kept, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("notebooks/", "")
@@ -61,3 +64,14 @@ def _put_in(upload, said):
             take_over(file)
         except SystemExit as problem:
             print(problem)
+
+
+def main():
+    """Write the ZIP into this folder, with the recordings, and say what to do with it."""
+    path = Path(f"ir50p_{date.today():%Y-%m-%d}.zip").resolve()
+    path.write_bytes(packed((*_FOLDERS, "recordings")))
+    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB, with functions, results, recordings and reports of bench-test")
+
+
+if __name__ == "__main__":
+    main()

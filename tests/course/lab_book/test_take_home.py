@@ -5,7 +5,7 @@ import zipfile
 import pytest
 
 from ir50p_lab.course.lab_book.update import take_over
-from ir50p_lab.course.publishing.take_home import packed
+from ir50p_lab.course.publishing.take_home import main, packed
 
 
 @pytest.fixture
@@ -44,3 +44,12 @@ def test_what_is_no_zip_is_said_in_a_sentence(content, tmp_path):
 def test_a_file_that_is_not_there_is_named(tmp_path):
     with pytest.raises(SystemExit, match=r"gone\.zip' cannot be unpacked: .*No such file"):
         take_over(tmp_path / "gone.zip")
+
+
+def test_one_file_to_send_has_the_recordings_too(mine, tmp_path, monkeypatch, capsys):
+    (tmp_path / "laptop" / "recordings").mkdir(parents=True)
+    (tmp_path / "laptop" / "recordings" / "drive.csv").write_text("t,q1")
+    monkeypatch.chdir(tmp_path)
+    main()
+    (sent,) = tmp_path.glob("ir50p_*.zip")
+    assert "notebooks/recordings/drive.csv" in zipfile.ZipFile(sent).namelist() and str(sent) in capsys.readouterr().out

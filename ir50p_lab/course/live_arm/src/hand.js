@@ -132,7 +132,7 @@ export class Hand {
     const { grip, view } = this, now = performance.now();
     grip.force = force.clampLength(0, this.mostPush);
     grip.felt ??= now;
-    view.say(now - grip.felt < FELT ? `you push with ${force.length().toFixed(1)} N at link ${grip.link}` : "a cell is running: until it ends the arm does not feel your hand");
+    view.say(now - grip.felt < FELT ? `you push with ${force.length().toFixed(1)} N at link ${grip.link}` : "the computer is busy (perhaps a cell is running): the arm does not feel your hand yet");
     if (!force.length() || now - (grip.sent ?? 0) > (grip.told === force ? 400 : 80)) {
       Object.assign(grip, { sent: now, told: force });
       view.ask({ push: [grip.link, grip.point.toArray(), force.toArray()] });

@@ -1,0 +1,34 @@
+"""A scripted student goes through the core of 16 to 18 in one home, and the arm goes to what it sees by own code alone."""
+
+import re
+
+import pytest
+from test_a_student_fits import gone_through
+
+from ir50p_lab.course.robot.catalogue import NOTEBOOKS, ORDER
+
+#: Of each function: what the student first writes for a part of the solution, and what is said of it.
+WRONG = {
+    "hue_mask": [("2 * r - g - b", "2 * r - g + b", "not yet")],
+    "circle_votes": [("point + radius", "point - radius", "not yet"), ("votes[y, x]", "votes[x, y]", "not yet")],
+    "homography": [("-X * u", "X * u", "not yet")],
+    "pixel_to_plane": [("pixel[0], pixel[1]", "pixel[1], pixel[0]", "not yet")],
+    "find_and_reach": [
+        ("best = 0.5", "best = 0", "a red bar is taken for a ball"),
+        ("pixel = middle", "pixel = middle[::-1]", "a pixel is column, then row"),
+        ("[0, 0, above]", "[0, 0, 0]", "mm off in height"),
+    ],
+}
+
+
+@pytest.mark.notebook
+def test_a_student_sees_a_ball_and_goes_there(tmp_path):
+    before = ORDER[: ORDER.index("hue_mask")]
+    gone_through("16_images_and_ball", tmp_path, WRONG, first=before)
+    assert "Kept: camera-1" in gone_through("17_camera_calibration", tmp_path, WRONG)
+    said = gone_through("18_vision_guided_reaching", tmp_path, WRONG)
+    assert "Your camera-1" in said and "(the course's" not in said
+    assert all(f"my_robot.{name}: yours" in said for name in (*NOTEBOOKS["16"], "pixel_to_plane", "computed_torque"))
+    assert "✓ worst of ten beside the line" in said
+    (miss,) = re.findall(r"ball\.miss\.by_camera: ([\d.]+) mm", said)
+    assert float(miss) < 25
