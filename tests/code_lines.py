@@ -28,9 +28,9 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "course/publishing": 601,
     "course/grading": 0,
     "launcher": 576,
-    "root": 329,
+    "root": 331,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_791, 19_930, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_793, 19_930, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
