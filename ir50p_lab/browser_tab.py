@@ -10,6 +10,7 @@ import logging
 import os
 import secrets
 import sys
+import warnings
 from importlib.machinery import PathFinder
 from pathlib import Path
 
@@ -138,3 +139,4 @@ if IN_BROWSER:
     if shell := _shell():
         shell.events.register("post_run_cell", _fetch_behind)
     logging.getLogger("matplotlib.font_manager").setLevel("ERROR")  # it lists its fonts each time, in red
+    warnings.filterwarnings("ignore", "tqdm:disabling monitor")  # it is a thread; the bar moves without it

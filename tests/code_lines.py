@@ -23,14 +23,14 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "simulation": 456,
     "bench": 2380,
     "identification": 1479,
-    "vision": 2299,
-    "course": 8698,  # without the next two
+    "vision": 2282,
+    "course": 8730,  # without the next two
     "course/publishing": 601,
     "course/grading": 330,
     "launcher": 576,
-    "root": 329,
+    "root": 331,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_806, 19_899, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_823, 19_952, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -25,7 +25,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "rendering": ["render_scene"],
         "reaching.budget": ["error_budget"],
         "reaching.moving": ["Mover"],
-        "reaching.plan": ["plan", "reach_pose", "work_area"],
+        "reaching.plan": ["plan", "reach_pose"],
         "reaching.reach": ["Reacher", "reach"],
         "reaching.rendered_bench": ["RenderedBench", "camera_over"],
         "reaching.ball_locator": ["BallLocator", "Seen"],

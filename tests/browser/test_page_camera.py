@@ -184,14 +184,19 @@ def test_a_notebook_sees_by_its_browser(with_a_camera, video, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("address", "words"),
-    [("http://localhost/", "may not use the camera: allow it"), ("http://lab.example/", "only to pages of https")],
+    ("address", "protocol", "words"),
+    [
+        ("http://localhost/", "location.protocol", "may not use the camera: allow it"),
+        ("http://lab.example/", "location.protocol", "only to pages of https"),
+        ("http://localhost/", "'vscode-webview:'", "open it in JupyterLab, or take open_camera(0)"),
+    ],
 )
-def test_why_there_is_no_picture_is_said(with_a_camera, address, words):
+def test_why_there_is_no_picture_is_said(with_a_camera, address, protocol, words):
     context = with_a_camera.new_context()
     page = context.new_page()
+    script = SCRIPT.read_text().replace("location.protocol", protocol)
     page.route("**/*", lambda route: route.fulfill(body="<!doctype html><body>", content_type="text/html"))
-    page.route("**/camera.js", lambda route: route.fulfill(path=SCRIPT, content_type="text/javascript"))
+    page.route("**/camera.js", lambda route: route.fulfill(body=script, content_type="text/javascript"))
     page.goto(address)
     on_the_page, to_python = page.evaluate(ALONE, "/camera.js")
     assert words in on_the_page and to_python == on_the_page

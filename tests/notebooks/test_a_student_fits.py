@@ -1,4 +1,4 @@
-"""A scripted student goes through the core of 12, 13 and 16: wrong answers first, then right ones, to a model and a ball."""
+"""A scripted student goes through the core of 12, 13, 16 and 17: wrong answers first, then right ones, to a model and a ball."""
 
 import re
 
@@ -28,6 +28,15 @@ WRONG = {
     "circle_votes": [
         ("+ radius", "- radius", "vote outwards"),
         ("votes[y, x]", "votes[x, y]", "an array is [row, column]"),
+    ],
+    "homography": [
+        ("-X * u, -X * v", "X * u, X * v", "the first row of a point have the wrong sign"),
+        ("u, v = pixels[k]", "v, u = pixels[k]", "a pixel is (column, row)"),
+    ],
+    "pixel_to_plane": [
+        ("height - camera[2]", "camera[2] - height", "it goes the other way along the line"),
+        ("pixel[0], pixel[1]", "pixel[1], pixel[0]", "a pixel is (column, row)"),
+        ("(height - ", "(height / 1000 - ", "at another height than the one asked for"),
     ],
     "fit_percent": [("100 * ", "", "it is a share, from 0 to 1"), ("1 - missed", "missed", "what is missed")],
 }
@@ -77,6 +86,8 @@ def test_a_student_fits_a_model_and_keeps_it(tmp_path):
 
 
 @pytest.mark.notebook
-def test_a_student_finds_the_ball(tmp_path):
+def test_a_student_finds_the_ball_and_its_place(tmp_path):
     said = gone_through("16_images_and_ball", tmp_path)
     assert "my_robot.circle_votes: yours" in said and "at (407, 212), radius 25 px" in said
+    said = gone_through("17_camera_calibration", tmp_path)
+    assert "✓ the worst of the four, mm beside" in said and "Kept: camera-1" in said

@@ -2,7 +2,9 @@
 
 import ast
 import re
+from itertools import pairwise
 
+import nbformat
 from minutes import core_of
 from notebook_runner import FOLDER, NOTEBOOKS, REWRITTEN
 
@@ -202,6 +204,14 @@ def figures_have_units(path, notebook):
     for cell in cells(notebook, "code"):
         for label in re.findall(r"""[xyz]label\(?=?\s*["']([^"']*)["']""", cell.source):
             assert re.search(r"\[.+\]", label), f"axis label {label!r} has no [unit]"
+
+
+def test_each_notebook_leads_to_the_next():
+    numbered = [path for path in NOTEBOOKS if path.name[0] != "A"]
+    for path, after in pairwise(numbered):
+        text = nbformat.read(path, as_version=4).cells[-1].source
+        title = nbformat.read(after, as_version=4).cells[0].source.splitlines()[0].removeprefix("# ")
+        assert text.endswith(f"**Next**: [{title}]({after.name})"), path.name
 
 
 def test_every_exercise_has_its_notebook():

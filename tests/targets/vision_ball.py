@@ -11,9 +11,9 @@ the network that this finder replaces found 116 of 119 balls; this one finds 97,
 import numpy as np
 
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import find_balls, render_scene, work_area
+from ir50p_lab.vision import find_balls, render_scene
 from ir50p_lab.vision.rendering import SceneBall, bench_scene
-from tests.support.places import places_in
+from tests.support.places import places_in, work_area
 from tests.support.random_picture import random_picture
 from tests.targets.in_parallel import mapped
 from tests.targets.rows import Row

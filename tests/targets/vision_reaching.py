@@ -6,11 +6,11 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import UnreachableError, VisionError
 from ir50p_lab.modelling import IR50P, forward_kinematics
-from ir50p_lab.vision import BallLocator, RenderedBench, reach, reach_pose, work_area
+from ir50p_lab.vision import BallLocator, RenderedBench, reach, reach_pose
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.plan import MARGIN
 from ir50p_lab.vision.reaching.reach import HEIGHT
-from tests.support.places import places_in
+from tests.support.places import places_in, work_area
 from tests.targets.in_parallel import mapped
 from tests.targets.rows import Row
 from tests.targets.vision_setup import calibrated, own_plane

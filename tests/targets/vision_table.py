@@ -3,9 +3,9 @@
 import numpy as np
 
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.vision import BallLocator, render_scene, work_area
+from ir50p_lab.vision import BallLocator, render_scene
 from ir50p_lab.vision.rendering import SceneBall, bench_scene
-from tests.support.places import places_in
+from tests.support.places import places_in, work_area
 from tests.targets.rows import Row
 from tests.targets.vision_setup import own_calibration, own_plane
 

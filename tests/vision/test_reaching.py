@@ -22,11 +22,10 @@ from ir50p_lab.vision import (
     plan,
     reach,
     reach_pose,
-    work_area,
 )
 from ir50p_lab.vision.reaching.budget import error_budget
 from ir50p_lab.vision.reaching.reach_result import BallTracker
-from tests.support.places import places_in
+from tests.support.places import places_in, work_area
 from tests.targets.vision_reaching import oracle_reaches
 from tests.targets.vision_setup import calibrated
 

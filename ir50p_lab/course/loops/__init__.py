@@ -5,8 +5,8 @@ from ir50p_lab import lazy
 __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
-        "breaking": ["PID", "broken", "name_it"],
-        "contest_rules": ["LIMITS", "contest", "score"],
+        "breaking": ["broken", "name_it"],
+        "contest_rules": ["LIMITS", "PID", "contest", "score"],
         "loop_views": ["Trembling", "ends", "one_loop", "three_loops", "weight_over_angle"],
         "speed_response": ["speed_jump"],
         "tuning_views": ["one_joint", "tuning_panel"],

@@ -15,7 +15,8 @@ import numpy as np
 
 from ir50p_lab.bench.arm_instance import ArmInstance
 from ir50p_lab.bench.simulated import SimulatedBench
-from ir50p_lab.controllers.base import check_controller
+from ir50p_lab.controllers.base import check_controller, is_compiled
+from ir50p_lab.controllers.pid import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.errors import LabError
 from ir50p_lab.modelling.chain import frames
@@ -201,3 +202,27 @@ def _keep(entry):
         return before
 
     return lab_book.change(edit)
+
+
+def twin_of(controller, arm=None):
+    """The compiled PID that does what this controller does, or None.
+
+    Built from its gains `kp`, `ki`, `kd`; both see the same angles of a practice run, noise included, and have to
+    send the same commands within a thousandth of a count.
+    """
+    if is_compiled(controller):
+        return controller
+    try:
+        twin = PID(controller.kp, controller.ki, controller.kd, limit_pwm=255)
+    except (AttributeError, LabError):
+        return None
+    given, recording, _ = drive(twin, PRACTICE[0], arm)
+    twin.reset()
+    if hasattr(controller, "reset"):
+        controller.reset()
+    rows = given.reference.sample(recording.t)
+    for t, q, r in zip(recording.t, recording.q, rows, strict=True):
+        theirs = np.asarray(controller.step(t, q.copy(), r.copy()), dtype=float)
+        if theirs.shape != (3,) or not np.abs(theirs - twin.step(t, q, r)).max() < 1e-3:
+            return None
+    return PID(controller.kp, controller.ki, controller.kd, limit_pwm=255)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.controllers.base import set_gains
+from ir50p_lab.controllers import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.course.draw.style import COLOURS, JOINTS, SETPOINT, new_figure, subplots
 from ir50p_lab.course.draw.widgets import slider
@@ -59,23 +59,28 @@ def gain_sliders(gains):
 
 
 def sliders_of(controller, arm, practice):
-    """The callback of a panel's sliders: they set the gains of this controller, and it drives.
+    """Return (update, words): the callback of a panel's sliders, and a sentence that says whose controller they move.
 
     The picture is that of one arm, the score that of all practice arms.
+    While the compiled twin sends the same commands as the student's class, the twin runs; else the student's Python.
     """
+    compiled = contest.twin_of(controller, arm) is not None
 
     def update(**values):
-        gains = {part: [values[f"{part}{joint}"] for joint in (1, 2, 3)] for part in _SLIDERS}
-        set_gains(controller, **gains)
+        gains = {part: [values[f"{part}{joint}"] for joint in (1, 2, 3)] for part in ("kp", "ki", "kd")}
+        pid = PID(**gains, limit_pwm=255) if compiled else controller
+        if not compiled:
+            for part, value in gains.items():
+                setattr(controller, part, np.array(value, dtype=float))
         try:
-            shown = contest.drive(controller, contest.PRACTICE[0], arm)
+            shown = contest.drive(pid, contest.PRACTICE[0], arm)
         except LabError as cut:
             return f"the bench cut the drive: {cut}"
         practice.show(shown)
 
         def scored():
             try:
-                runs = [shown, *(contest.drive(controller, seed, arm) for seed in contest.PRACTICE[1:])]
+                runs = [shown, *(contest.drive(pid, seed, arm) for seed in contest.PRACTICE[1:])]
             except LabError as cut:
                 return f"the bench cut the drive: {cut}"
             found = contest.score_of(runs)
@@ -86,7 +91,15 @@ def sliders_of(controller, arm, practice):
 
         return scored
 
-    return update
+    if compiled:
+        return (
+            update,
+            "the sliders set the gains; the compiled PID runs, it sent the same commands as the class in Python",
+        )
+    return (
+        update,
+        "the sliders set the gains; the class in Python runs: the compiled PID is another law (not a better one)",
+    )
 
 
 def history(rules=None):

@@ -64,7 +64,9 @@ def law_for(bench):
 
 
 def way(start, goal, seconds=4):
-    """The student's quintic from pose to pose, as Mover takes it."""
+    """The student's quintic from pose to pose, as Mover takes it. Raises VisionError where the goal is None."""
+    if goal is None:
+        raise VisionError("there is no pose to go to: no ball is seen, or the arm cannot go there; look at the picture")
 
     def sample(t):
         return np.array([my_robot.quintic(start, goal, seconds, one) for one in t])

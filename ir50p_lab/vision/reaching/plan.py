@@ -1,7 +1,6 @@
 """Can the arm reach it, in which pose, and on which trajectory: smooth, and clear of the table and of the ball."""
 
 import contextlib
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -15,33 +14,7 @@ from ir50p_lab.signals.quintic import through
 MARGIN = 0.03  # rad: poses stay so far from the joint limits, for at a limit the drive is cut
 CLEAR = 0.08  # m: height over the table that the tip keeps on its path, to pass over a ball of 60 mm
 LIFT = 0.08  # m: the last piece of the path begins so far above the goal
-_HEIGHT = 0.09  # m: height of the tip for which the work area holds, 30 mm over the top of a ball of 60 mm
-_ANGLE = 0.52  # rad: the work area spans no more than this to each side of x
 _PEAK = 1.875  # a quintic's largest speed over its mean
-
-
-@dataclass(frozen=True)
-class WorkArea:
-    """Where balls may lie for this arm: a part of a ring on the table, r_min..r_max m, -angle..angle rad about x.
-
-    It reaches 30 mm farther out than the arm does: who lays a ball there gets a refusal.
-    """
-
-    r_min: float
-    r_max: float
-    angle: float
-
-
-def work_area(arm):
-    """The area of this arm with the tip 90 mm above the table: from its inner to 30 mm past its outer edge."""
-    near = []
-    for r in np.arange(0.02, sum(arm.l) + 0.01, 0.005):
-        with contextlib.suppress(UnreachableError):
-            reach_pose(arm, [r, 0.0, _HEIGHT])
-            near.append(float(r))
-    if not near:
-        raise UnreachableError(f"no point at height {_HEIGHT} m is within reach of {arm.name}")
-    return WorkArea(near[0], near[-1] + 0.03, float(min(_ANGLE, arm.q_max[0], -arm.q_min[0])))
 
 
 def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):

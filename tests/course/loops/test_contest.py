@@ -113,6 +113,18 @@ def test_a_cut_drive_is_lost_and_says_why():
     assert found.value == np.inf and "cut the drive" in str(found)
 
 
+def test_the_twin_is_taken_only_where_it_sends_the_same():
+    student = solutions.load().PID
+    assert jury.twin_of(student(**TUNED), IR50P) is not None
+    assert jury.twin_of(Mine(), IR50P) is None
+
+    class Trapezoid(student):
+        def step(self, t, q, reference):
+            return super().step(t, q, reference) + 0.5 * self.ki * self.period * (reference[0] - q)
+
+    assert jury.twin_of(Trapezoid(**TUNED), IR50P) is None
+
+
 def test_compiled_and_python_give_one_score():
     mine, twin = solutions.load().PID(**TUNED), pid(**TUNED)
     a, b = jury.score(mine, [1], IR50P), jury.score(twin, [1], IR50P)

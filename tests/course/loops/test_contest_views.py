@@ -1,4 +1,4 @@
-"""Pictures of the contest: what is drawn is what was driven; the sliders set the gains of the controller they are given."""
+"""Pictures of the contest: what is drawn is what was driven; the sliders say whose controller they move."""
 
 import numpy as np
 import pytest
@@ -26,19 +26,25 @@ def test_practice_draws_the_run_that_is_scored():
 
 
 def test_sliders_move_the_students_gains():
-    """Of a class of the student's, which need not be a PID, and of the course's that stands in."""
+    """A class that the twin agrees with runs compiled; another law runs itself; a course's PID stands in."""
+    student = solutions.load().PID
 
-    class Half(solutions.load().PID):
+    class Half(student):
         def step(self, t, q, reference):
             return 0.5 * super().step(t, q, reference)
 
     view = contest_views.Practice(IR50P)
-    for kind in (Half, lambda **gains: PID(**gains, limit_pwm=255)):
-        said = contest_views.sliders_of(kind(kp=(300,) * 3, ki=(50,) * 3, kd=(40,) * 3), IR50P, view)(**GAINS)()
-        wanted = kind(kp=(900,) * 3, ki=(800,) * 3, kd=(5,) * 3)  # the sliders' gains, not those it began with
-        assert f"practice arms {contest.score(wanted, arm=IR50P).value:.2f}" in said
-        assert "kp, ki, kd = (900, 900, 900), (800, 800, 800), (5, 5, 5)" in said
-        np.testing.assert_array_equal(view.recording.u, contest.drive(wanted, contest.PRACTICE[0], IR50P)[1].u)
+    said = {}
+    for kind in (student, Half, lambda **gains: PID(**gains, limit_pwm=255)):
+        update, words = contest_views.sliders_of(kind(kp=(300,) * 3, ki=(50,) * 3, kd=(40,) * 3), IR50P, view)
+        said[words] = update(**GAINS)(), view.recording.u.copy()
+    compiled, own = said
+    assert "compiled PID runs" in compiled and "the class in Python runs" in own
+    assert f"practice arms {contest.score(Half(900, 800, 5), arm=IR50P).value:.2f}" in said[own][0]
+    assert "kp, ki, kd = (900, 900, 900), (800, 800, 800), (5, 5, 5)" in said[own][0]
+    assert not np.allclose(said[own][1], said[compiled][1])
+    wanted = Half(kp=(900,) * 3, ki=(800,) * 3, kd=(5,) * 3)  # the sliders' gains, not those it began with
+    np.testing.assert_array_equal(said[own][1], contest.drive(wanted, contest.PRACTICE[0], IR50P)[1].u)
 
 
 def test_history_shows_every_attempt_and_the_rules():
