@@ -24,13 +24,13 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "bench": 2380,
     "identification": 1479,
     "vision": 2282,
-    "course": 8730,  # without the next two
-    "course/publishing": 601,
-    "course/grading": 330,
-    "launcher": 576,
+    "course": 8764,  # without the next two
+    "course/publishing": 599,
+    "course/grading": 440,
+    "launcher": 577,
     "root": 331,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 18_823, 19_952, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_296, 20_123, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
