@@ -17,8 +17,6 @@ from ir50p_lab.course.grading.submissions import submissions
 from ir50p_lab.course.robot.catalogue import ORDER
 from ir50p_lab.errors import LabError
 
-_COUNTED = ("right", "wrong", "loan", "open")
-
 
 def judged(handed_in, seconds=sandbox.SECONDS):
     """[{function: (state, sentence)}] of submissions, several at a time, with a bar of progress."""
@@ -33,12 +31,12 @@ def write_table(path, handed_in, found):
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         table = csv.writer(file)
         said = ("predictions (self-reported)", "reasons (self-reported)")
-        table.writerow(["student", "partners (self-reported)", *_COUNTED, *said, *ORDER, "trouble"])
+        table.writerow(["student", "partners (self-reported)", *sandbox.STATES, *said, *ORDER, "trouble"])
         for one, verdicts in zip(handed_in, found, strict=True):
             states = [verdicts.get(name, ("open", ""))[0] for name in ORDER]
             counts = Counter(states)
             reasons = sum(bool(entry["why"]) for entry in one.predictions.values())
-            row = [one.name, " and ".join(one.partners), *(counts[state] for state in _COUNTED)]
+            row = [one.name, " and ".join(one.partners), *(counts[state] for state in sandbox.STATES)]
             row += [len(one.predictions), reasons, *states, one.trouble]
             table.writerow(map(_plain, row))
 

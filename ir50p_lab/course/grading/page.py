@@ -15,7 +15,8 @@ _STYLE = """
 body { font: 15px/1.5 sans-serif; max-width: 76rem; margin: 1.5rem auto; padding: 0 1rem; color: #222 }
 table { border-collapse: collapse } h2 { margin-top: 2rem } summary { cursor: pointer } .self { color: #666 }
 td, th { padding: 3px 14px 3px 0; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd }
-.bar { display: inline-flex; width: 200px; height: 13px; margin-right: 10px } .bar span { height: 13px }
+svg { border-bottom: 1px solid #bbb }
+.bar { display: flex; width: 200px; height: 13px; margin-top: 5px } .bar span { height: 13px }
 """
 _FEWEST, _MOST = 3, 12  # guesses that make a histogram; histograms
 _STEP, _SIDE = 1.25, 6  # a bar of a histogram is a quarter more; bars to each side of the truth
@@ -44,13 +45,15 @@ def _predictions(handed_in):
     rows = []
     for name in sorted(shares, key=shares.get, reverse=True)[:_MOST]:
         many = enough[name]
-        truth = f"{median(one['truth'] for one in many):.3g} {many[0]['unit']}"
+        truth = f"{median(one['truth'] for one in many):.4g} {many[0]['unit']}"
         reasons = Counter(one["why"][:150] for one in many if one["why"]).most_common(3)
         said = "<br>".join(f"{count} × <q>{_text(why)}</q>" for why, count in reasons)
         hits = f"{round(shares[name] * len(many))} of {len(many)}"
         rows.append((_text(title(name)), hits, _histogram(many), _text(truth), said))
     return _table(
-        ("what", "missed by", "guess over truth, in steps of a quarter", "truth", "reasons given"), rows, "self"
+        ("what", "missed by", "guess over truth, in steps of a quarter; farther: at an end", "truth", "reasons given"),
+        rows,
+        "self",
     )
 
 
@@ -127,7 +130,7 @@ def _bar(counts):
         f"<span style='background:{colour};width:{100 * counts[state] / total:.1f}%'></span>"
         for state, colour in _COLOURS.items()
     )
-    return f"<span class=bar>{parts}</span>{words}"
+    return f"<span class=bar>{parts}</span><small>{words}</small>"
 
 
 def _table(head, rows, kind=""):

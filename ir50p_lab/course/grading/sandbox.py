@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ir50p_lab.home import PROJECT, VARIABLE
 
+STATES = "right", "wrong", "loan", "open"
 SECONDS = 120  # for one student, by the clock
 _ENDED = "its process ended, or did not end in time: an endless loop, or more memory than it may have?"
 
@@ -54,13 +55,13 @@ def verdicts(functions, before, seconds=SECONDS):
 
 def _run(functions, before, seconds):
     """What a process says until it ends or is ended: {name: (state, sentence)}."""
-    # a home in which nothing is, and one thread
     command = [*before, sys.executable, "-P", "-m", "ir50p_lab.course.grading.inside"]
     child = subprocess.Popen(
         command,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
+        # a home in which nothing is, and one thread
         env=os.environ | {VARIABLE: os.devnull, "OPENBLAS_NUM_THREADS": "1"},
         start_new_session=True,
     )
@@ -71,12 +72,16 @@ def _run(functions, before, seconds):
         said, _ = child.communicate()  # what it said until then
     finally:
         _end(child)
-    return {name: (state, says) for name, state, says in map(json.loads, said.splitlines()) if name in functions}
+    try:
+        lines = map(json.loads, said.splitlines())
+        return {name: (state, says) for name, state, says in lines if name in functions and state in STATES}
+    except (ValueError, TypeError):  # none of ours: it wrote into the channel of the verdicts
+        return {}
 
 
 def _end(child):
     """End a process and all that it started."""
     try:
         os.killpg(child.pid, signal.SIGKILL) if hasattr(os, "killpg") else child.kill()
-    except ProcessLookupError:
-        pass
+    except (ProcessLookupError, PermissionError):
+        pass  # it is gone already

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import zipfile
+from types import SimpleNamespace
 
 import pytest
 
@@ -99,3 +100,12 @@ def test_a_link_out_of_a_folder_is_not_followed(tmp_path):
     (tmp_path / "class" / "eve" / "my_robot" / "_rot_z.py").symlink_to(tmp_path / "secret")
     (made,) = submissions(tmp_path / "class")
     assert made.functions == {} and "no plain file" in made.trouble
+
+
+def test_a_forged_line_that_is_no_verdict_counts_for_nothing(monkeypatch):
+    said = b'["rot_z", "right", ""]\n["rot_z", "best", ""]\n'
+    ended = SimpleNamespace(pid=2**22 + 1, kill=lambda: None, communicate=lambda *_, **__: (said, b""))
+    monkeypatch.setattr(sandbox.subprocess, "Popen", lambda *_, **__: ended)
+    assert sandbox._run({"rot_z": ""}, [], 1) == {"rot_z": ("right", "")}
+    said = b"forged\n"
+    assert sandbox._run({"rot_z": ""}, [], 1) == {}
