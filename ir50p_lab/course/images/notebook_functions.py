@@ -41,13 +41,14 @@ def best_circle(mask, radii):
 def _masks():
     rows, columns = np.indices((70, 90))
     cases = []
-    for x, y, r in ((30, 30, 12), (55, 40, 9), (44, 28, 15)):
+    for x, y, r in ((30, 30, 12), (55, 40, 9), (44, 28, 15), (79, 30, 8)):  # the last beyond the height of the mask
         disc = np.hypot(columns - x, rows - y) < r
         bar = (np.abs(rows - 62) < 3) & (columns > 20)
         cases += [(disc, range(7, 19)), (disc | bar, [18, 14, 8, 9, 12, 15, 10])]
     small = np.hypot(columns - 15, rows - 15) < 7
     half = (np.hypot(columns - 55, rows - 40) < 24) & (rows < 40)  # more votes, and a smaller share
-    return [*cases, (small | half, [24, 20, 7, 9])]
+    cut_off = np.hypot(columns - 95, rows - 30) < 14  # its middle lies outside the mask
+    return [*cases, (small | half, [24, 20, 7, 9]), (cut_off, [14])]
 
 
 TASKS = notebook_tasks(
