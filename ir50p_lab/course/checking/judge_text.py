@@ -15,6 +15,7 @@ _ALLOWED = {"numpy", "math", "cmath", "collections", "dataclasses", "functools",
 _DOORS = {name for name, value in vars(np).items() if isinstance(value, ModuleType)}
 _DOORS -= {"linalg", "random", "fft", "polynomial", "typing"}
 _DOORS |= {"os", "sys", "_sys", "builtins", "inspect", "types", "contextlib", "warnings", "attrgetter", "methodcaller"}
+_DOORS |= {"get_type_hints", "ForwardRef", "make_dataclass"}  # they evaluate texts
 _DOORS |= {"save", "savez", "savez_compressed", "savetxt", "tofile", "dump", "memmap", "DataSource"}  # files
 _DOORS |= {"load", "loadtxt", "genfromtxt", "fromfile", "fromregex"}
 _DOORS |= {"gi_frame", "cr_frame", "tb_frame", "f_back", "f_builtins", "f_globals"}
@@ -88,13 +89,14 @@ def _refuse_imports(node):
 
 def _refuse_doors(node):
     """Refuse the inner modules of NumPy and of others (`np.lib`), and names of Python's own in a text."""
+    docstrings = {id(one.value) for one in ast.walk(node) if isinstance(one, ast.Expr)}
     for one in ast.walk(node):
         match one:
             case ast.Import(names=aliases) | ast.ImportFrom(names=aliases):
                 names = {part for alias in aliases for part in alias.name.split(".")}
             case ast.Attribute(attr=name, value=value) if ast.unparse(value) != "self":
                 names = {name}
-            case ast.Constant(value=str(text)) if "__" in text:
+            case ast.Constant(value=str(text)) if "__" in text and id(one) not in docstrings:
                 raise CannotTake("a text in it holds `__`: names of Python's own are not for a robot")
             case _:
                 continue

@@ -88,7 +88,7 @@ def test_the_stub_is_not_written_yet(capsys):
 
 def test_what_stands_in_the_cell_comes_along_and_nothing_else(capsys):
     text = (
-        "import numpy as np\nTURN = 1.0\n\n\ndef c(a):\n    return np.cos(TURN * a)\n\n\ndef rot_z(angle):\n"
+        "import numpy as np\nTURN = 1.0\n\n\ndef c(a):\n    'No __init__ here.'\n    return np.cos(TURN * a)\n\n\ndef rot_z(angle):\n"
         "    s = np.sin(angle)\n    return np.array([[c(angle), -s, 0], [s, c(angle), 0], [0, 0, 1]])\n\n\nprint('hello')\n"
     )
     give("rot_z", text)
@@ -105,6 +105,19 @@ def test_what_stands_in_the_cell_comes_along_and_nothing_else(capsys):
         ("def rot_z(angle):\n    return cos(angle)", {"cos": np.cos}, "write `np.cos`"),
         ("def rot_z(angle):\n    from ir50p_lab.modelling import rot_z\n    return rot_z(angle)", {}, "NumPy alone"),
         ("from scipy.spatial.transform import Rotation\n\n\ndef rot_z(angle):\n    return Rotation", {}, "NumPy alone"),
+        ("def rot_z(angle):\n    return np.lib._npyio_impl.sys", {}, "it uses `"),
+        ("from dataclasses import sys\n\n\ndef rot_z(angle):\n    return sys", {}, "it uses `sys`"),
+        (
+            "import operator\n\n\ndef rot_z(angle):\n    return operator.attrgetter('__dict__')(np)",
+            {},
+            "it uses `attrgetter`",
+        ),
+        ("def rot_z(angle):\n    return '{0.__dict__}'.format(np)", {}, "a text in it holds `__`"),
+        (
+            "class A:\n    def m(self):\n        return self.m.__globals__\n\n\ndef rot_z(angle):\n    return A().m()",
+            {},
+            "`self.m.__globals__`",
+        ),
     ],
 )
 def test_strangers_are_refused_with_a_sentence(text, notebook, words, capsys):
@@ -119,6 +132,8 @@ def test_after_three_failures_lines_after_six_a_loan(capsys):
         give("rot_z", f"def rot_z(angle):\n    return {k} * np.eye(3)  # the same again")
         out = said(capsys)
         assert ("lends you" in out) == (k == 5)
+    tries = lab_book.read()["attempts"]["rot_z"].values()
+    assert len(tries) == 6 and list(tries)[-1] in out
     assert my_robot.whose("rot_z") == "on loan"
     give("rot_z", solutions.source("rot_z"))
     assert my_robot.whose("rot_z") == "yours"

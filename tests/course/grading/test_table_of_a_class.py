@@ -28,7 +28,12 @@ def _home(folder, names, guess=0.5, why="I forgot the <b>sine</b>"):
         (robot / f"_{name}.py").write_text(imports + text, encoding="utf-8")
     entry = {"guess": guess, "truth": 0.33, "within": 0.1, "unit": "m", "why": why}
     book = {
-        "predictions": {"fk.height": entry, "odd": {"guess": "x", "truth": []}, "none": 3},
+        "predictions": {
+            "fk.height": entry,
+            "odd": {"guess": "x", "truth": []},
+            "none": 3,
+            "late": entry | {"late": True},
+        },
         "attempts": {"frames": {"a": _SLIP, "b": _SLIP}, "jacobian": ["c"], "evil": 3},
         "partners": ["=1+1", "Bob"],
         "helped": [{"text": "an assistant"}],
@@ -44,6 +49,7 @@ def handed_in(tmp_path_factory):
     _home(folder / "=ada", ORDER)
     borrowed = _home(folder / "bob" / "notebooks", ("rot_z", "dh_matrix", "frames", "jacobian"), guess=0.2)
     robot = borrowed / "my_robot"
+    (robot / "_rot_z.py").write_bytes("# für q\n".encode("latin-1") + (robot / "_rot_z.py").read_bytes())
     frames = (robot / "_frames.py").read_text("utf-8")
     (robot / "_frames.py").write_text(frames.replace("return ", "return 2 * "), encoding="utf-8")
     (robot / "_quintic.py").write_text("# on loan from the course: the next\n", encoding="utf-8")
