@@ -14,6 +14,13 @@ from mini_project import PROJECT, one_line
 
 from ir50p_lab.launcher import commands, problems
 
+
+@pytest.mark.parametrize("mark", ["ERROR", "error", "Error", "ValueError"])
+def test_the_line_that_is_marked_as_the_error_is_told(mark):
+    output = f"Resolving\n{mark}: the disc spins backwards\nhint: a word at the end"
+    assert "disc spins backwards" in str(problems.from_output(output, 2, Path("lab"), Path("log")))
+
+
 # -- Python too old --------------------------------------------------------------------------------------------------------
 
 

@@ -12,7 +12,7 @@ from quick_locator import QuickLocator
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.errors import CalibrationError, CameraError, InputError, UnreachableError, VisionError
-from ir50p_lab.modelling import IR50P, forward_kinematics, frames
+from ir50p_lab.modelling import IR50P, forward_kinematics, frames, inverse_kinematics
 from ir50p_lab.vision import (
     BallLocator,
     Reacher,
@@ -73,6 +73,15 @@ def test_refusals_are_those_of_an_independent_search():
 def test_a_refusal_says_why(p, why):
     with pytest.raises(UnreachableError, match=why):
         reach_pose(IR50P, p)
+
+
+def test_the_elbow_of_an_arm_with_a_short_column_stays_above_the_table():
+    arm = replace(IR50P, l=(0.15, 0.200, 0.372), q_min=(-1.7, -1.7, -2.4), q_max=(1.7, 1.9, 2.4))
+    place = (0.30, 0.0, 0.02)
+    below = min(inverse_kinematics(arm, place).q, key=lambda q: np.sin(q[1]) + abs(q[0]))
+    assert arm.l[0] + arm.l[1] * np.sin(below[1]) < 0, "else this proves nothing"
+    q = reach_pose(arm, place, near=below)
+    assert arm.l[0] + arm.l[1] * np.sin(q[1]) > 0
 
 
 def test_plans_arrive_are_smooth_and_stay_clear():

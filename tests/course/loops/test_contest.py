@@ -51,6 +51,13 @@ def test_figures_of_a_motion_that_is_known():
     assert found[3] == pytest.approx(max(np.mean(end) for end in ends))
 
 
+@pytest.mark.parametrize(("share", "won"), [(0.99, True), (1.01, False)])
+def test_won_is_every_figure_within_its_limit(share, won):
+    terms = np.array([[limit * 0.5] * 3 for limit, _ in jury.LIMITS.values()])
+    terms[2, 1] *= 2 * share
+    assert jury.Score(terms).won is won
+
+
 def test_draws_are_within_reach_and_differ():
     arms = [load_arm("data/arm_example.toml"), IR50P]
     for arm in arms:
