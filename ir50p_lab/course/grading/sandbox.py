@@ -12,6 +12,7 @@ from ir50p_lab.home import PROJECT, VARIABLE
 
 STATES = "right", "wrong", "loan", "open"
 SECONDS = 120  # for one student, by the clock
+_INSIDE = ("-P", "-m", "ir50p_lab.course.grading.inside")
 _ENDED = "its process ended, or did not end in time: an endless loop, or more memory than it may have?"
 
 
@@ -55,9 +56,8 @@ def verdicts(functions, before, seconds=SECONDS):
 
 def _run(functions, before, seconds):
     """What a process says until it ends or is ended: {name: (state, sentence)}."""
-    command = [*before, sys.executable, "-P", "-m", "ir50p_lab.course.grading.inside"]
     child = subprocess.Popen(
-        command,
+        [*before, sys.executable, *_INSIDE],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
