@@ -1,6 +1,7 @@
 """A student in a browser: predicts, writes sixteen functions wrongly and rightly, drags, is cut off, goes on, reports."""
 
 import ast
+import html
 import os
 import re
 import shutil
@@ -14,7 +15,7 @@ import solutions
 from conftest import running_lab
 from test_live_arm_in_lab import KERNEL_IDLE, VIEW, drag_tip, show
 
-from ir50p_lab.course.publishing.report import _NAMES, _named
+from ir50p_lab.course.lab_book import names
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "notebooks").glob("0[0-7]_*.ipynb"))
 WRITTEN = solutions.ORDER[: solutions.ORDER.index("PID")]
@@ -122,7 +123,13 @@ def test_nothing_of_a_student_is_lost(browser, tmp_path):
     subprocess.run(command, env=os.environ | home, check=True, cwd=Path(__file__).parents[2])
     (report,) = (tmp_path / "mine" / "results").glob("report_*.html")
     text = report.read_text(encoding="utf-8")
-    assert set(predicted) <= set(_NAMES), "names.txt"
-    for words in ("Ada", "1.25", "as it had to come", *map(_named, predicted), *(f"def {name}" for name in WRITTEN)):
+    assert set(predicted) <= set(names.titles()), "names.txt"
+    for words in (
+        "Ada",
+        "1.25",
+        "as it had to come",
+        *(html.escape(names.title(one)) for one in predicted),
+        *(f"def {name}" for name in WRITTEN),
+    ):
         assert words in text, words
     assert "on loan" not in text

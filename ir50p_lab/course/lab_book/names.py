@@ -5,11 +5,12 @@ from pathlib import Path
 
 
 @cache
-def _names():
+def titles():
+    """{name: words} of names.txt."""
     lines = Path(__file__).with_name("names.txt").read_text("utf-8").splitlines()
     return dict(line.split(": ", 1) for line in lines)
 
 
 def title(key):
     """The title of a number or figure of the lab book: from names.txt, else made from its key."""
-    return _names().get(key, key.replace(".", ", ").replace("_", " "))
+    return titles().get(key, key.replace(".", ", ").replace("_", " "))
