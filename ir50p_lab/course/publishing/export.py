@@ -1,6 +1,7 @@
 """A notebook as one HTML page without network requests: pictures, formulas and the 3-D arm inside; and as PDF."""
 
 import html
+import os
 import shutil
 import subprocess
 import tempfile
@@ -18,6 +19,8 @@ from ir50p_lab.course.publishing.pictures import live_arm_script, plain_outputs
 from ir50p_lab.errors import InputError, LabError
 
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
+_REACHED = "<script>for (const one of document.querySelectorAll('math, table')) if (one.scrollWidth > one.clientWidth) "
+_REACHED += "one.tabIndex = 0;</script>"  # what scrolls on a narrow screen does so by keys, too
 _CSS = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
 
 
@@ -60,7 +63,7 @@ def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
     is_text = notebook.suffix == ".md"
     nb = _text_page(notebook) if is_text else nbformat.read(notebook, as_version=4)
     if run and not is_text:
-        _run(nb, notebook)
+        execute(nb, notebook)
     folder.mkdir(parents=True, exist_ok=True)
     written = [folder / f"{notebook.stem}.html"]
     title = title or notebook.stem
@@ -80,9 +83,15 @@ def find_browser():
     return next(filter(None, map(shutil.which, _BROWSERS)), None)
 
 
-def _run(nb, notebook):
+def execute(nb, notebook, **variables):
+    """Run the cells in the folder of the file `notebook`, with these environment variables too.
+
+    Raises LabError with the cell that fails.
+    """
+    where = {"metadata": {"path": str(notebook.resolve().parent)}}
+    client = nbclient.NotebookClient(nb, timeout=600, kernel_name="python3", resources=where)
     try:
-        nbclient.execute(nb, cwd=str(notebook.resolve().parent), timeout=600, kernel_name="python3")
+        client.execute(env=os.environ | variables, stderr=subprocess.DEVNULL)  # the kernel's own notices
     except CellExecutionError as error:
         raise LabError(f"{notebook} does not run: {error}") from None
 
@@ -100,7 +109,8 @@ def _page(nb, title, *, live, code):
     head = (
         f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(title)}</title>'
     )
-    return f"<!doctype html><html lang=en><head>{head}<style>{style}</style></head><body>{body}{script}</body></html>"
+    page = f"<head>{head}<style>{style}</style></head><body><main>{body}</main>{_REACHED}{script}</body>"
+    return f"<!doctype html><html lang=en>{page}</html>"
 
 
 def _print(browser, page, path):

@@ -1,0 +1,31 @@
+"""The public names of the package, with their docstrings, as one page of text."""
+
+import importlib
+import inspect
+import re
+
+_SUBJECTS = "modelling controllers signals simulation bench identification vision course"
+
+
+def reference():
+    """Return the page as Markdown: a section a subject; below it each name, how it is called, and its docstring."""
+    parts = [
+        "# Public names",
+        "`from ir50p_lab.SUBJECT import NAME`: what there is, with the docstrings of the package.",
+    ]
+    for subject in _SUBJECTS.split():
+        module = importlib.import_module(f"ir50p_lab.{subject}")
+        parts += [f"## {subject}", inspect.getdoc(module)]
+        for name in module.__all__:
+            parts += [f"### {name}", *_entries(name, getattr(module, name))]
+    return "\n\n".join(parts)
+
+
+def _entries(name, thing):
+    """How a name is called, and its docstring; of a class its methods, too."""
+    call = inspect.signature(thing) if callable(thing) and not name.endswith("Error") else f": {type(thing).__name__}"
+    call = re.sub(r"\b(?:\w+\.)+(?=[A-Z])", "", f"{name}{call}")  # types without their modules
+    yield f"```python\n{call}\n```\n\n```text\n{inspect.getdoc(thing)}\n```"
+    for method, function in vars(thing).items() if inspect.isclass(thing) else ():
+        if inspect.isfunction(function) and function.__doc__ and not method.startswith("_"):
+            yield from _entries(f"{name}.{method}", function)
