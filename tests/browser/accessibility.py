@@ -15,3 +15,9 @@ def violations(page):
         said = [f"{one['id']}: {node['html'][:150]}" for one in results["violations"] for node in one["nodes"]]
         found |= {theme: said} if said else {}
     return found
+
+
+def fits(page, width):
+    """Make the screen so wide and wait until nothing reaches beyond it."""
+    page.set_viewport_size({"width": width, "height": 900})
+    page.wait_for_function("(width) => document.documentElement.scrollWidth <= width", arg=width)

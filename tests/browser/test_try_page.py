@@ -1,7 +1,7 @@
 """The page to try: made from what is here now, and alive without a network."""
 
 import pytest
-from accessibility import violations
+from accessibility import fits, violations
 from PIL import Image
 
 from ir50p_lab.course.publishing.animation import PICTURE
@@ -85,6 +85,5 @@ def test_everybody_can_read_it_on_any_screen(page):
     page.goto(PAGE.as_uri())
     page.wait_for_function("() => document.querySelectorAll('.la').length === 5", timeout=60_000)
     assert violations(page) == {}
-    page.set_viewport_size({"width": 390, "height": 844})
-    assert page.evaluate("() => document.documentElement.scrollWidth") <= 390
+    fits(page, 390)
     assert violations(page) == {}

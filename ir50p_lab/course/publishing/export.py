@@ -19,8 +19,8 @@ from ir50p_lab.course.publishing.pictures import live_arm_script, plain_outputs
 from ir50p_lab.errors import InputError, LabError
 
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
-_REACHED = "<script>for (const one of document.querySelectorAll('math, table')) if (one.scrollWidth > one.clientWidth) "
-_REACHED += "one.tabIndex = 0;</script>"  # what scrolls on a narrow screen does so by keys, too
+_REACHED = """<script>for (const one of document.querySelectorAll("math, table, .output_html"))
+  if (one.scrollWidth > one.clientWidth) one.tabIndex = 0;</script>"""  # what scrolls does so by keys, too
 _CSS = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
 
 
