@@ -3,6 +3,7 @@
 import importlib
 import inspect
 import re
+import textwrap
 
 _SUBJECTS = "modelling controllers signals simulation bench identification vision course"
 
@@ -25,7 +26,8 @@ def _entries(name, thing):
     """How a name is called, and its docstring; of a class its methods, too."""
     call = inspect.signature(thing) if callable(thing) and not name.endswith("Error") else f": {type(thing).__name__}"
     call = re.sub(r"\b(?:\w+\.)+(?=[A-Z])", "", f"{name}{call}")  # types without their modules
-    yield f"```python\n{call}\n```\n\n```text\n{inspect.getdoc(thing)}\n```"
+    about = inspect.getdoc(thing) if callable(thing) or inspect.ismodule(thing) else textwrap.shorten(repr(thing), 400)
+    yield f"```python\n{call}\n```\n\n```text\n{about}\n```"
     for method, function in vars(thing).items() if inspect.isclass(thing) else ():
         if inspect.isfunction(function) and function.__doc__ and not method.startswith("_"):
             yield from _entries(f"{name}.{method}", function)
