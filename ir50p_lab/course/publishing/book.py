@@ -51,9 +51,9 @@ def book(to, *, run=True):
         parts = re.split("(?=</head>)|(?<=<body>)<main>|</main>", _linked(page, source.parent, places))
         bound = template.render(parts=parts, sections=sections, here=here)
         (to / names[here]).write_text(bound, "utf-8")
-    (to / "search.js").write_text(f"const SECTIONS = {json.dumps(sections, ensure_ascii=False)};", "utf-8")
+    found = [[one for one in page if one[1] != "Predictions"] for page in sections]  # who learns shall not find them
+    (to / "search.js").write_text(f"const SECTIONS = {json.dumps(found, ensure_ascii=False)};", "utf-8")
     shutil.copy(_DOCS / "try" / "index.html", to / "try.html")
-    shutil.copy(_DOCS / "arm.gif", to)
     return to / "index.html"
 
 
@@ -91,8 +91,7 @@ def _linked(page, folder, places):
         name = places.get((folder / path).resolve())
         return f'<a href="{name}{place}">{words}</a>' if name else words
 
-    page = re.sub(r'<a href="(?!\w+:)([^"#]+)(#[^"]*|)"[^>]*>(.*?)</a>', link, page, flags=re.DOTALL)
-    return page.replace('src="docs/', 'src="')
+    return re.sub(r'<a href="(?!\w+:)([^"#]+)(#[^"]*|)"[^>]*>(.*?)</a>', link, page, flags=re.DOTALL)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import html
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -75,7 +76,11 @@ def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
 
 
 def _text_page(path):
-    return nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(path.read_text(encoding="utf-8"))])
+    """A text as a notebook of one cell; its pictures are found where it lies."""
+    text = re.sub(
+        r"(!\[[^]]*]\()(?!\w+:)", f"\\g<1>{path.resolve().parent.as_posix()}/", path.read_text(encoding="utf-8")
+    )
+    return nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(text)])
 
 
 def find_browser():
