@@ -1,5 +1,6 @@
 """A notebook as one HTML page without network requests: pictures, formulas and the 3-D arm inside; and as PDF."""
 
+import asyncio
 import html
 import os
 import re
@@ -96,7 +97,8 @@ def execute(nb, notebook, **variables):
     where = {"metadata": {"path": str(notebook.resolve().parent)}}
     client = nbclient.NotebookClient(nb, timeout=600, kernel_name="python3", resources=where)
     try:
-        client.execute(env=os.environ | variables, stderr=subprocess.DEVNULL)  # the kernel's own notices
+        with asyncio.Runner(loop_factory=asyncio.SelectorEventLoop) as loop:
+            loop.run(client.async_execute(env=os.environ | variables, stderr=subprocess.DEVNULL))  # its own notices
     except CellExecutionError as error:
         raise LabError(f"{notebook} does not run: {error}") from None
 
