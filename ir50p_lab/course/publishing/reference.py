@@ -1,11 +1,12 @@
 """The public names of the package, with their docstrings, as one page of text."""
 
-import importlib
 import inspect
 import re
 import textwrap
 
-_SUBJECTS = "modelling controllers signals simulation bench identification vision course"
+from ir50p_lab import bench, controllers, course, identification, modelling, signals, simulation, vision
+
+_SUBJECTS = (modelling, controllers, signals, simulation, bench, identification, vision, course)
 
 
 def reference():
@@ -14,9 +15,8 @@ def reference():
         "# Public names",
         "`from ir50p_lab.SUBJECT import NAME`: what there is, with the docstrings of the package.",
     ]
-    for subject in _SUBJECTS.split():
-        module = importlib.import_module(f"ir50p_lab.{subject}")
-        parts += [f"## {subject}", inspect.getdoc(module)]
+    for module in _SUBJECTS:
+        parts += [f"## {module.__name__.partition('.')[2]}", inspect.getdoc(module)]
         for name in module.__all__:
             parts += [f"### {name}", *_entries(name, getattr(module, name))]
     return "\n\n".join(parts)
