@@ -31,7 +31,11 @@ def take_over(folder, named=None):
     print(f"Taken over from {named or older}: {len(files) - len(left)} files, into {home()}")
     if (home() / "old").is_dir():
         print(f"The older notebooks are beside the new ones, in {home() / 'old'}")
-    foreign = [str(path) for path in files if path.suffix == ".py" and "\ufffd" in path.read_text("utf-8", "replace")]
+    foreign = [
+        str(path)
+        for path in files
+        if path.suffix == ".py" and {"\0", "\ufffd"} & set(path.read_text("utf-8", "replace"))
+    ]
     if foreign:
         print(f"Save with the encoding UTF-8, or Python cannot read them: {', '.join(foreign)}")
     print(f"Left where they are, because they cannot be read or are different here: {', '.join(left) or 'none'}")
