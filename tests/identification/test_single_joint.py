@@ -586,7 +586,7 @@ def test_readings_that_fail_to_two_values_and_within_the_range_of_the_motion(mac
 @machines
 def test_a_speed_without_its_sign_is_mended_as_a_speed(machine):
     t, q, u = recorded(machine, 5)
-    refused(r"give np\.abs\(qd\) \* np\.sign\(u\) as qd", t, None, u, qd=np.abs(np.gradient(q, t)))
+    refused("give np.abs(qd) * np.sign(u) as qd", t, None, u, qd=np.abs(np.gradient(q, t)))
 
 
 @machines
