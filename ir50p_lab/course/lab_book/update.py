@@ -1,5 +1,6 @@
 """`python3 -m ir50p_lab update FOLDER|FILE.zip`: take over what is the student's from another copy of the course."""
 
+import json
 import shutil
 import sys
 import tempfile
@@ -51,13 +52,15 @@ def _take_over_zip(file):
 
 
 def _copied(path, target):
-    """Copy a file unless there is one; tell whether both are equal now."""
+    """Copy a file unless there is one; tell whether both are equal now. What should be JSON and is not stays behind."""
     try:
+        if path.suffix in (".ipynb", ".json"):  # cut off, of zeros, half merged, or only a place holder of a cloud
+            json.loads(path.read_text("utf-8-sig"))
         if not target.exists():
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, target)
         return target.read_bytes() == path.read_bytes()
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 
