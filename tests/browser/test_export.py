@@ -1,16 +1,21 @@
 """Exported pages: every picture is there, formulas are drawn, and nothing is fetched from anywhere."""
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import nbformat
 import pytest
+import yaml
 
 from ir50p_lab.course.publishing.__main__ import main
 from ir50p_lab.course.publishing.export import export
 from ir50p_lab.course.publishing.formulas import mathml
 from ir50p_lab.errors import InputError, LabError
 
+ROOT = Path(__file__).parents[2]
 CELLS = [
     "from ir50p_lab.course.draw.style import new_figure\nfigure = new_figure(3, 2)\nfigure",
     "import ipywidgets\nfrom ir50p_lab.course.draw.widgets import live\nlive(new_figure(3, 2), lambda a: None, a=(0, 1, 0.1, 0))",
@@ -93,10 +98,19 @@ def test_formulas_become_mathml_with_their_latex_beside_it(latex):
     assert found.startswith("<math") and "alttext=" in found
 
 
-def test_the_page_for_the_wall_is_one_page_of_paper(tmp_path, browser):
-    page, paper = export(Path(__file__).parents[2] / "docs" / "on_the_wall.md", tmp_path)
-    assert "In an emergency" in page.read_text(encoding="utf-8")
+def test_a_release_carries_the_page_for_the_wall_on_one_sheet(tmp_path, browser):
+    """By the workflow's own commands, but for pip; gh says what it was told."""
+    steps = yaml.safe_load((ROOT / ".github/workflows/release.yml").read_text("utf-8"))["jobs"]["wall"]["steps"]
+    here = f'pip() {{ :; }}; python() {{ "{sys.executable}" "$@"; }}; gh() {{ echo gh "$@"; }}'
+    script = "\n".join(["set -e", here, *(step["run"] for step in steps if "run" in step)])
+    places = os.environ | {"RUNNER_TEMP": str(tmp_path), "GITHUB_REF_NAME": "v1"}
+    told = subprocess.run(["bash", "-c", script], cwd=ROOT, env=places, capture_output=True, text=True, check=True)
+    paper = tmp_path / "on_the_wall.pdf"
+    assert told.stdout.splitlines()[-1] == f"gh release upload v1 {paper}"
+    assert "In an emergency" in paper.with_suffix(".html").read_text(encoding="utf-8")
     assert len(re.findall(rb"/Type\s*/Page\b", paper.read_bytes())) == 1
+    (sheet,) = re.findall(rb"/MediaBox\s*\[0 0 (\S+) (\S+)\]", paper.read_bytes())
+    assert [float(side) / 72 * 25.4 for side in sheet] == pytest.approx([210, 297], abs=0.5)  # A4, mm
 
 
 def test_on_paper_the_hints_are_open(tmp_path, browser):

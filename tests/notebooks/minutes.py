@@ -1,7 +1,7 @@
 """How long a notebook takes: ``PYTHONPATH=. python tests/notebooks/minutes.py`` prints it and fills
-README's table and the openings.
+README, the instructor's guide and the openings.
 
-Sections are marked: who does the core alone needs less. A session is 90 minutes.
+Sections are marked: who does the core alone needs less.
 
 words/100 + 3 a prediction + 2 a panel + 6, 15 or 40 a function by its size + code lines/2, in steps of five minutes.
 """
@@ -17,6 +17,7 @@ from ir50p_lab.course.checking.tasks import of_notebook, task
 from ir50p_lab.course.robot.catalogue import function_of, is_function, stays
 
 README, INSTRUCTOR = ROOT / "README.md", ROOT / "docs" / "instructor.md"
+SESSION = 90  # minutes
 PANEL = re.compile(r"^(?:\w+\.)?(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M)
 
 
@@ -78,16 +79,29 @@ def _said(path):
 
 
 def sessions(path):
-    """Sessions of 90 minutes that the core of a notebook fills, in words."""
-    number = -(-core(path) // 90)
+    """Sessions that the core of a notebook fills, in words."""
+    number = -(-core(path) // SESSION)
     return "1 session" if number == 1 else f"{number} sessions"
 
 
 def filled(text):
-    """The text of README with the minutes of its table as counted."""
-    for path in rewritten():
+    """The text of README with its hours and the minutes of its table as counted."""
+    paths = rewritten()
+    for path in paths:
         text = re.sub(rf"(\| \[`{path.stem}`\].*\| )\d+[^|]*( \|)$", rf"\g<1>{_said(path)}\2", text, flags=re.M)
-    return text
+    numbers = {
+        rf"(00 to {paths[-1].name[:2]} are )\d+( hours)": round(sum(map(minutes, paths)) / 60),
+        r"(their core )\d+(\.)": round(sum(map(core, paths)) / 60),
+        r"(a session is )\d+( of)": SESSION,
+    }
+    return _with(numbers, text)
+
+
+def _before(path, words):
+    """Minutes of the core of a notebook up to the cell that has these words."""
+    cells = core_of(nbformat.read(path, as_version=4).cells)
+    (end,) = [number for number, cell in enumerate(cells) if words in cell.source]
+    return _counted(cells[: end + 1])
 
 
 def planned(text):
@@ -102,7 +116,14 @@ def planned(text):
         r"(on the second \()\d+(\))": sum(cores[8:10]),
         r"(week \()\d+( to \d+ minutes of core)": min(cores[3:8]),
         r"(week \(\d+ to )\d+( minutes of core)": max(cores[3:8]),
+        r"(sections 1 to 5 \()\d+( minutes)": _before(paths[8], "second good place for a break"),
+        r"(so a session of )\d+( minutes)": SESSION,
     }
+    return _with(numbers, text)
+
+
+def _with(numbers, text):
+    """The text with each number in its place: what stands before and behind it occurs once."""
     for place, number in numbers.items():
         text, found = re.subn(place, rf"\g<1>{number}\2", text)
         assert found == 1, place

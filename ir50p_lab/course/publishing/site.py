@@ -145,7 +145,7 @@ def main():
         "--pyodide",
         required=True,
         metavar="FOLDER|URL",
-        help="a Pyodide with its packages: docs/developing.md, Browser tab",
+        help="a Pyodide with its packages: docs/developing.md, section 'The site of the browser tab'",
     )
     parser.add_argument("--to", default="site", metavar="FOLDER", help="where the site goes (default: site)")
     chosen = parser.parse_args()
