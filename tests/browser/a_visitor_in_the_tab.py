@@ -95,7 +95,10 @@ def opened(context, address):
 def test_what_a_visitor_writes_in_the_tab_stays_and_goes_home(browser, site, tmp_path):
     context = browser.new_context(viewport={"width": 1366, "height": 768}, accept_downloads=True)
     with served(site) as address:
-        page = opened(context, f"{address}/lab/")
+        page = context.new_page()
+        page.goto(f"{address}/index.html")
+        page.get_by_role("link", name="Begin with notebook 00").click()
+        page.wait_for_function(KERNEL_IDLE, timeout=300_000)
         assert "00_start_here.ipynb" in page.url
         run(page, number_of(page, "import numpy as np"))
         run(page, number_of(page, "run = Recording.load"))
