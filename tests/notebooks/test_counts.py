@@ -45,10 +45,10 @@ WATCHDOG = f"{WATCHDOG_MS / 1000:g}"
 LONGEST = inspect.signature(run_notebook).parameters["timeout"].default
 TOLD = [
     ("README.md", r"a browser tab \((.*?)\)", f"{TO[0]} to {TO[-1]}, and {BESIDE}"),
-    ("docs/where_it_runs.md", r"(\d\d to \d\d, and (?:of )?\d\d) but", f"{TO[0]} to {TO[-1]}, and {BESIDE}"),
+    ("docs/where_it_runs.md", r"(\d\d to \d\d, and (?:of )?\d\d) except", f"{TO[0]} to {TO[-1]}, and {BESIDE}"),
     ("README.md", r"In each of 00 to (\d+)", LAST),
     ("docs/with_the_arm.md", r"00 to 09 and 12 to (\d+)", LAST),
-    ("00", r"Each has its notebook, in 00 to (\d+)", LAST),
+    ("00", r"You write them yourself\*\*, in 00 to (\d+)", LAST),
     ("00", r"made of (\S+) functions", spelled(len(catalogue.ORDER))),
     ("README.md", r"in (\w+) subjects", SUBJECTS),
     ("docs/developing.md", r"[Tt]he (\w+) subjects", SUBJECTS),
