@@ -24,13 +24,13 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "bench": 2380,
     "identification": 1479,
     "vision": 2282,
-    "course": 8767,  # without the next two
+    "course": 9244,  # without the next two
     "course/publishing": 599,
-    "course/grading": 441,
-    "launcher": 577,
+    "course/grading": 560,
+    "launcher": 578,
     "root": 331,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_300, 20_340, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_897, 20_580, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

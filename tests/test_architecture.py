@@ -45,6 +45,7 @@ SUBJECTS_TOO = {
     "dynamics": {"kinematics"},
     "at_the_bench": {"kinematics", "motion"},
     "reaching": {"images", "camera", "kinematics", "torque"},
+    "unknown": {"images", "torque", "at_the_bench", "camera", "fitting", "motion"},
 }
 
 

@@ -78,9 +78,9 @@ def _still(w, i, q, u, load, held):
     if idle or abs(q - still[2]) > w.noise[i]:
         still[0], still[1], still[2], still[3] = 0.0, 0.0, q, 0.0 if idle else 1.0
         return False
-    still[0] += min(1.0, dt / w.lag[i]) * (excess / n[FV + i] - still[0])
+    still[0] += min(1.0, dt / w.lag[i]) * (cf.sign(u) * excess / n[FV + i] - still[0])  # to and fro leads nowhere
     still[1] += still[0] * dt
-    answered = still[1] - DELAY * dt * still[0]  # a motor answers late
+    answered = cf.sign(u) * (still[1] - DELAY * dt * still[0])  # a motor answers late
     return answered > (HELD if still[3] > 0 else FRESH)
 
 

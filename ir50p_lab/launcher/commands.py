@@ -13,6 +13,7 @@
   python3 -m ir50p_lab update FOLDER  take over what is yours from an older copy of the course, or a browser tab's ZIP
   python3 -m ir50p_lab pack           all that is yours, recordings and reports of bench-test too, as one ZIP to send
   python3 -m ir50p_lab grade FOLDER   check what a class has handed in: a table (CSV) and a page (HTML)
+  python3 -m ir50p_lab judge FILE     race a hand-in of notebook 19 on arms that nobody has seen (--arms 20)
   python3 -m ir50p_lab doctor         what is installed, what is missing, serial ports, verdict
 
   --here         use the Python that runs this instead of .venv (Binder, JupyterHub); installs nothing
@@ -53,6 +54,7 @@ _MODULES = {
     "update": "ir50p_lab.course.lab_book.update",
     "pack": "ir50p_lab.course.publishing.take_home",
     "grade": "ir50p_lab.course.grading",
+    "judge": "ir50p_lab.course.grading.judge",
 }
 #: What asks the launcher to end: `kill`, and a terminal that is closed (not on Windows).
 _ENDS = {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}

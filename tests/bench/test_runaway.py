@@ -121,6 +121,17 @@ def test_a_strong_drive_that_leads_nowhere_is_named_though_it_comes_and_goes(dri
     assert not alarm or strong < 500
 
 
+@pytest.mark.parametrize("size", [80, 110, 150, 200])
+def test_a_command_that_swings_to_and_fro_may_leave_a_joint_where_it_is(size):
+    """Ten times a second, as with a noisy derivative: the joint trembles by less than its potentiometer's noise."""
+    with SimulatedBench(q0=(0, 0.5, -1), record_to=False) as bench:
+        for k, sample in enumerate(bench.run(seconds=4, reference=hold((0, 0.5, -1)))):
+            u = 2000 * (sample.reference[0] - sample.q)
+            u[0] = size if k % 10 < 5 else -size
+            bench.drive(u)
+        assert np.ptp(bench.recording.q[200:, 0]) < 0.1
+
+
 UNDER = (0.0, 1.7, -0.3)  # with a mirrored shoulder 15 cm under the table
 
 

@@ -36,7 +36,7 @@ def extract(thing, name, earlier, given="", function_arguments=()):
     if called not in (name, "<lambda>"):
         raise CannotTake(f"the function has to be called `{name}`, yours is called `{called}`")
     notebook = getattr(plain_function(thing), "__globals__", {})
-    return cut(_cell_text(thing), name, earlier, given, function_arguments, notebook)
+    return cut(cell_text(thing), name, earlier, given, function_arguments, notebook)
 
 
 def cut(text, name, earlier, given="", function_arguments=(), notebook=()):
@@ -55,7 +55,7 @@ def cut(text, name, earlier, given="", function_arguments=(), notebook=()):
         if one in offered:
             if offered[one] not in wanted:
                 wanted.append(offered[one])
-                queue += _globals_of(offered[one])
+                queue += globals_of(offered[one])
         elif one in earlier:
             calls.add(one)
         elif one == "my_robot":
@@ -89,7 +89,8 @@ def compile_source(source, task):
     return room[task.function]
 
 
-def _cell_text(thing):
+def cell_text(thing):
+    """The text of the cell in which a function was defined. Raises CannotTake."""
     code = getattr(plain_function(thing), "__code__", None)
     text = "".join(linecache.getlines(code.co_filename)) if code else ""
     if not text:
@@ -118,7 +119,7 @@ def _names_in(node):
     return {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
 
 
-def _globals_of(node):
+def globals_of(node):
     """Names that a definition looks up outside itself, as the compiler sees them."""
     names, codes = {}, [compile(ast.Module([node], []), "cell", "exec")]
     while codes:

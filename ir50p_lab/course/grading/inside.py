@@ -53,8 +53,11 @@ def _allow(seconds):
         signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
-def lock_up():
-    """From now on: no new process, no written file, little memory, no rights of root. Windows has no such limits."""
+def lock_up(seconds=None):
+    """From now on: no new process, no written file, little memory, no rights of root; seconds: of the processor.
+
+    Windows has no such limits.
+    """
     try:
         import resource
     except ImportError:
@@ -69,6 +72,8 @@ def lock_up():
     limits = {"FSIZE": 0, "NOFILE": 64, "NPROC": 0, "CORE": 0}
     if sys.platform == "linux":  # macOS counts what is shared
         limits["AS"] = _MEMORY
+    if seconds is not None:
+        limits["CPU"] = seconds
     for what, most in limits.items():
         resource.setrlimit(getattr(resource, f"RLIMIT_{what}"), (most, most))
 

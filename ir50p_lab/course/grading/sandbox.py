@@ -13,7 +13,7 @@ from ir50p_lab.home import PROJECT, VARIABLE
 STATES = "right", "wrong", "loan", "open"
 SECONDS = 120  # for one student, by the clock
 _INSIDE = ("-P", "-m", "ir50p_lab.course.grading.inside")
-_ENDED = "its process ended, or did not end in time: an endless loop, or more memory than it may have?"
+ENDED = "its process ended, or did not end in time: an endless loop, or more memory than it may have?"
 
 
 def isolation():
@@ -49,29 +49,21 @@ def verdicts(functions, before, seconds=SECONDS):
         left = {name: text for name, text in left.items() if name not in told}
         if left:
             name = next(iter(left))
-            found[name] = ("wrong", _ENDED)
+            found[name] = ("wrong", ENDED)
             del left[name]
     return found
 
 
 def _run(functions, before, seconds):
     """What a process says until it ends or is ended: {name: (state, sentence)}."""
-    child = subprocess.Popen(
-        [*before, sys.executable, *_INSIDE],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        # a home in which nothing is, and one thread
-        env=os.environ | {VARIABLE: os.devnull, "OPENBLAS_NUM_THREADS": "1"},
-        start_new_session=True,
-    )
+    child = started([*before, sys.executable, *_INSIDE], os.devnull)
     try:
         said, _ = child.communicate(json.dumps(functions).encode() + b"\n", timeout=seconds)
     except subprocess.TimeoutExpired:
-        _end(child)
+        end(child)
         said, _ = child.communicate()  # what it said until then
     finally:
-        _end(child)
+        end(child)
     try:
         lines = map(json.loads, said.splitlines())
         return {name: (state, says) for name, state, says in lines if name in functions and state in STATES}
@@ -79,7 +71,14 @@ def _run(functions, before, seconds):
         return {}
 
 
-def _end(child):
+def started(command, home, **more):
+    """A process in a group of its own, with this home and one thread; it hears and speaks through pipes."""
+    variables = os.environ | {VARIABLE: str(home), "OPENBLAS_NUM_THREADS": "1"}
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    return subprocess.Popen(command, env=variables, start_new_session=True, **pipes, **more)
+
+
+def end(child):
     """End a process and all that it started."""
     try:
         os.killpg(child.pid, signal.SIGKILL) if hasattr(os, "killpg") else child.kill()

@@ -14,13 +14,14 @@ _SHARE = 1 - np.exp(-2 * np.pi * 10 * 0.01)  # of the 10 Hz filter of 08, every 
 _LIMIT = 255  # counts
 
 
-class _Rate:
+class Rate:
     """How fast the error changes, behind the 10 Hz filter of 08."""
 
     def __init__(self):
         self.last, self.rate = None, np.zeros(3)
 
     def of(self, error):
+        """The rate (3,) after one more error (3,), 10 ms later."""
         if self.last is not None:
             self.rate = self.rate + _SHARE * ((error - self.last) / 0.01 - self.rate)
         self.last = error
@@ -42,7 +43,7 @@ class OnBench:
 
     def reset(self):
         """Forget the past."""
-        self._rate = _Rate()
+        self._rate = Rate()
 
     def step(self, t, q, reference):
         """The counts (3,) for one sample."""
@@ -71,7 +72,7 @@ class Learning:
 
     def reset(self):
         """Forget what was learnt."""
-        self.theta, self.beliefs, self._rate = self.start.copy(), [], _Rate()
+        self.theta, self.beliefs, self._rate = self.start.copy(), [], Rate()
 
     def step(self, t, q, reference):
         """The counts (3,) for one sample."""

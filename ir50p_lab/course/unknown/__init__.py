@@ -1,0 +1,20 @@
+"""Notebook 19: an arm that nobody has seen."""
+
+from ir50p_lab import lazy
+
+__getattr__, __dir__, __all__ = lazy.attach(
+    __name__,
+    submod_attrs={
+        "robot": [
+            "COLUMNS",
+            "OnLegs",
+            "PracticeWay",
+            "Rate",
+            "find_balls",
+            "motion",
+            "plan",
+            "there_and_back",
+            "with_a_pull",
+        ],
+    },
+)

@@ -1,0 +1,49 @@
+"""What came of the races of a hand-in, one on each arm."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ir50p_lab.course.unknown.world import BALLS, END, MISSING, World
+
+
+@dataclass(frozen=True)
+class Raced:
+    """Of one arm: its world, with the way of the arm in it; void: why the race does not count, or ""."""
+
+    world: World
+    void: str = ""
+
+    @property
+    def touched(self):
+        """How many balls."""
+        return 0 if self.void else int(BALLS - np.isnan(self.world.touched).sum())
+
+    @property
+    def seconds(self):
+        """Of the last touch, or more where a ball is missing; a void race is one without a touch."""
+        return END + MISSING * BALLS if self.void else self.world.score
+
+    def __str__(self):
+        return f"void: {self.void}" if self.void else f"{self.touched} of {BALLS} balls, {self.seconds:.2f} s"
+
+
+@dataclass(frozen=True)
+class RaceDay:
+    """races: a tuple of Raced, one of each arm."""
+
+    races: tuple
+
+    @property
+    def median(self):
+        """Seconds."""
+        return float(np.median([one.seconds for one in self.races]))
+
+    @property
+    def complete(self):
+        """On how many arms all balls were touched."""
+        return sum(one.touched == BALLS for one in self.races)
+
+    def __str__(self):
+        rows = [f"arm {number}: {one}" for number, one in enumerate(self.races, 1)]
+        return "\n".join([*rows, f"median {self.median:.2f} s, complete on {self.complete} of {len(self.races)} arms"])
