@@ -23,7 +23,7 @@ Further arguments go to JupyterLab, to pytest (paths count from the project's fo
 
   py -m ir50p_lab --no-browser --port 9999
   py -m ir50p_lab test -k pose
-  py -m ir50p_lab targets vision --quick    (or identification, computed_torque, hostile; no name: all)
+  py -m ir50p_lab targets vision --quick    (or identification, computed_torque, hostile, unknown_arm)
 """
 
 import argparse

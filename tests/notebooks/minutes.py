@@ -47,7 +47,7 @@ def core_of(cells):
 def _counted(cells):
     text = "\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
     code = "\n".join(cell.source for cell in cells if cell.cell_type == "code")
-    checked = re.findall(r'^(?:\w+ = )?check\("([\w.]+)"', code, re.M)
+    checked = re.findall(r'\bcheck\("([\w.]+)"', code)
     functions = [name for name in checked if is_function(name)]
     here = [name for name in checked if stays(name)]
     lines = sum(bool(line.strip()) for line in code.splitlines())

@@ -1,4 +1,4 @@
-"""The tables of targets beside the thesis: `python -m tests.targets [identification|computed_torque|vision|hostile ...] [...]`.
+"""The tables of targets beside the thesis: `python -m tests.targets [NAME ...] [...]`; NAME: one of `NAMES`.
 
 Without names, all of them. What follows the names goes to each: `--quick`, or what `vision --help` lists. Every name is a
 module here with `main(arguments)`, which prints its table and returns 1 when a target is missed. The exit code is 0 when
@@ -10,7 +10,7 @@ import itertools
 import sys
 import traceback
 
-NAMES = ("identification", "computed_torque", "vision", "hostile")
+NAMES = ("identification", "computed_torque", "vision", "hostile", "unknown_arm")
 
 
 def main(arguments):

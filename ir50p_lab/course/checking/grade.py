@@ -182,7 +182,7 @@ def _numbers(trial):
     if task.compare is not None or task.results or any(one is None for one in (*returned, *expected)):
         return ""
     if all(map(_is_zero, returned)):
-        return "it is 0 for every input: is what it computes put into what it returns?"
+        return "it is 0 for every input: is what it computes put into what it returns, and after the loop?"
     if all(np.array_equal(one, returned[0]) for one in returned):
         return f"it returns the same for every input: {short_text(returned[0])}"
     if all(map(_is_whole, returned)) and not all(map(_is_whole, expected)):

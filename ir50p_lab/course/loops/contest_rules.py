@@ -188,7 +188,7 @@ def contest(controller, name):
     if found.value < best:
         print(f"attempt {len(before) + 1}: the best so far")
     elif best < _LOST:
-        print(f"attempt {len(before) + 1}: your best is {best:.2f}, attempt {before.index(best) + 1}")
+        print(f"attempt {len(before) + 1}: the best is {best:.2f}, attempt {before.index(best) + 1}")
     return found
 
 

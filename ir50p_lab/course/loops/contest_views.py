@@ -111,7 +111,7 @@ def history(rules=None):
     values = np.minimum([one["score"] for one in attempts], _TOP)
     number = np.arange(1, len(values) + 1)
     if len(values):
-        ax.step(number, np.minimum.accumulate(values), where="post", color=COLOURS["dark"], label="your best")
+        ax.step(number, np.minimum.accumulate(values), where="post", color=COLOURS["dark"], label="the best so far")
     for name, marker in _MARKERS.items():
         mine = [k for k, one in enumerate(attempts) if one["decides"][0] == name and values[k] < _TOP]
         if mine:

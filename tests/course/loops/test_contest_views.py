@@ -56,8 +56,8 @@ def test_history_shows_every_attempt_and_the_rules():
     rule = contest.Score(np.full((5, 3), 5.0))
     figure = contest_views.history({"a rule": rule})
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert {"your best", "activity decided", "a rule", "below: won"} <= set(labels)
-    best = next(line for line in figure.axes[0].lines if line.get_label() == "your best")
+    assert {"the best so far", "activity decided", "a rule", "below: won"} <= set(labels)
+    best = next(line for line in figure.axes[0].lines if line.get_label() == "the best so far")
     assert best.get_ydata() == pytest.approx([8, 3, 3, 0.9])
     cut = next(line for line in figure.axes[0].lines if line.get_label() == "the drive was cut")
     assert cut.get_xydata().tolist() == [[3, 100]]  # and no figure decided it

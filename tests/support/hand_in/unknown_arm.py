@@ -31,12 +31,14 @@ def quickest(theta, a, b, most=200):
     return seconds
 
 
-def race(bench, theta, legs, kp=25, kd=15):
-    on_legs, rate = views.OnLegs(legs), views.Rate()
+def race(bench, theta, legs, kp=25, ki=3, kd=15):
+    on_legs, rate, total = views.OnLegs(legs), views.Rate(), np.zeros(3)
     for sample in bench.race():
         plan, ahead = on_legs(sample, 0), on_legs(sample, bench.delay)
         off, off_rate = sample.q - plan[0], rate.of(sample.q - plan[0])
+        total = total + 0.01 * off
         off, off_rate = when_it_acts(off, off_rate, bench.delay)
+        ahead[2] = ahead[2] - ki * total
 
         def model(q, qd, qdd, planned=ahead[1]):
             return np.sum(my_robot.regressor(q, planned, qdd, np.tanh(planned / 0.05)) * theta, axis=1)

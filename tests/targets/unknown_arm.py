@@ -1,0 +1,127 @@
+"""Strategies on arms that nobody has seen (19), each a change in the reference hand-in, by tests/solutions."""
+
+import argparse
+import contextlib
+import io
+import os
+import re
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from ir50p_lab.course.robot.catalogue import ORDER
+from ir50p_lab.course.unknown.far_bench import FarBench
+from ir50p_lab.course.unknown.race_day import Raced, RaceDay
+from ir50p_lab.course.unknown.world import World
+from tests.targets.in_parallel import mapped
+from tests.targets.rows import Row, table
+
+TESTS = Path(__file__).parents[1]
+REFERENCE = TESTS / "support" / "hand_in" / "unknown_arm.py"
+MOST, LEAST = 3.6, 0.95  # s, median; share of arms that are completed
+LOST = 0.25  # share of arms that nominal numbers complete at most
+_NOMINAL = """
+def practise(bench, seed):
+    pass
+
+
+def learn(bench, runs):
+    return bench.nominal
+"""
+_NOT_LED = """
+def when_it_acts(off, off_rate, delay):
+    return off, off_rate
+
+
+class NotLed(views.OnLegs):
+    def __call__(self, sample, ahead):
+        return super().__call__(sample, 0)
+
+
+views = SimpleNamespace(**{name: getattr(views, name) for name in dir(views)} | {"OnLegs": NotLed})
+"""
+_PID = (
+    _NOMINAL
+    + """
+
+def quickest(theta, a, b):
+    return max(0.25, 1.875 * np.abs(b - a).max() / {pace})
+
+
+def race(bench, theta, legs):
+    on_legs, pid = views.OnLegs(legs), my_robot.PID(*{gains})
+    for sample in bench.race():
+        q, qd, qdd = on_legs(sample, bench.delay)
+        planned = np.sum(my_robot.regressor(q, qd, qdd, np.tanh(qd / 0.05)) * theta, axis=1)
+        bench.drive({share} * planned + pid.step(sample.t, sample.q, on_legs(sample, 0)))
+"""
+)
+_CLIMBED = ((1400, 1392, 1400), (1508, 2300, 2180), (17, 17, 17))  # 50 steps on 12 other arms: nine gains and a pace
+_TUNED = ((1000, 1000, 1000), (800, 2800, 2400), (8, 1, 1))  # of 09
+STRATEGIES = {
+    "identified, computed torque": "",
+    "the same, not led by the delay": _NOT_LED,
+    "the same, theta = nominal": _NOMINAL,
+    "nominal feed-forward, PID climbed on other arms": _PID.format(pace=1.2, gains=_CLIMBED, share=1),
+    "PID of 09 alone, 0.5 rad/s": _PID.format(pace=0.5, gains=_TUNED, share=0),
+}
+
+
+def raced(item):
+    """What came of a strategy on the arm of a seed: Raced."""
+    name, seed = item
+    world = World(seed)
+    room = {}
+    with contextlib.redirect_stdout(io.StringIO()):  # whose functions are in use
+        exec("from types import SimpleNamespace\n" + REFERENCE.read_text("utf-8") + STRATEGIES[name], room)
+        room["unknown_arm"](FarBench(world.answer))
+    return Raced(world)
+
+
+def write_robot(home):
+    """The functions of tests/solutions as a student's `my_robot`."""
+    folder = Path(home) / "my_robot"
+    folder.mkdir(parents=True)
+    for k, name in enumerate(ORDER):
+        text = (TESTS / "solutions" / f"{name}.py").read_text("utf-8")
+        leans = [one for one in ORDER[:k] if re.search(rf"\b{one}\(", text)]
+        imports = "".join(f"from ._{one} import {one}\n" for one in leans)
+        (folder / f"_{name}.py").write_text(f"import math\n\nimport numpy as np\n\n{imports}\n\n{text}", "utf-8")
+    (folder / "__init__.py").write_text("".join(f"from ._{name} import {name}\n" for name in ORDER), "utf-8")
+
+
+def rows(seeds):
+    """A row of each strategy."""
+    items = [(name, seed) for name in STRATEGIES for seed in seeds]
+    races = mapped(raced, items, "races")
+    for k, name in enumerate(STRATEGIES):
+        day = RaceDay(tuple(races[k * len(seeds) : (k + 1) * len(seeds)]))
+        share = day.complete / len(seeds)
+        target, ok = "-", None
+        if name.startswith("identified"):
+            target, ok = f"<= {MOST} s, {LEAST:.0%} complete", day.median <= MOST and share >= LEAST
+        elif name.endswith("nominal"):
+            target, ok = f"<= {LOST:.0%} complete", share <= LOST
+        yield Row(name, target, f"{day.median:.2f} s, {day.complete} of {len(seeds)} complete", ok=ok)
+
+
+def main(arguments=None):
+    """Print the table; returns 1 if a target is missed."""
+    parser = argparse.ArgumentParser(prog="python -m tests.targets.unknown_arm", description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="3 arms instead of 20")
+    options = parser.parse_args(arguments)
+    start, seeds = time.perf_counter(), range(19_000, 19_003 if options.quick else 19_020)
+    with tempfile.TemporaryDirectory() as home:
+        write_robot(home)
+        os.environ["IR50P_HOME"] = home
+        found = list(rows(seeds))
+    print(
+        table(found, f"Three balls on an arm that nobody has seen, median and arms with all three ({len(seeds)} arms)")
+    )
+    print(f"{time.perf_counter() - start:.0f} s", file=sys.stderr)
+    return int(any(row.ok is False for row in found))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
