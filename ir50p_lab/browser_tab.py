@@ -26,13 +26,14 @@ WHEN_NEEDED = ("scipy", "pandas", "sympy")  # packages that the page fetches at 
 _KEPT = ("results/**/*", "my_robot/**/*", "progress.json")
 
 
-class NotInABrowserError(LabError, ImportError):
+class NotInABrowserError(LabError, ModuleNotFoundError):
     """What a browser tab cannot do; the message says what can."""
 
 
-def needs_more(what):
-    """Raise the error of something that a tab cannot do."""
-    raise NotInABrowserError(f"A browser tab cannot do this: {what}. On your machine, 'python3 -m ir50p_lab' can.")
+def needs_more(what, module=None):
+    """Raise the error of something that a tab cannot do; module: the one that would be needed."""
+    said = f"A browser tab cannot do this: {what}. On your machine, 'python3 -m ir50p_lab' can."
+    raise NotInABrowserError(said, name=module)
 
 
 class Lacking:
@@ -42,7 +43,7 @@ class Lacking:
     def find_spec(name, path=None, target=None):
         """None for a module that is merely not there."""
         if name in _LACKING:
-            needs_more(f"{name}, which {_LACKING[name]}, is not loaded")
+            needs_more(f"{name}, which {_LACKING[name]}, is not loaded", name)
         return _fetch_package(name) if name in WHEN_NEEDED else None
 
 

@@ -57,6 +57,17 @@ def path_setting(name):
     return _in_project(text) if text else None
 
 
+def read_text(path, error):
+    """Return the text of a file in UTF-8. Raises OSError, and `error` with the remedy if it has another encoding."""
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        text = "\0"
+    if "\0" in text:  # plain letters in UTF-16 are UTF-8, too
+        raise error(f"{path} is not in UTF-8: open it in an editor and save it with the encoding UTF-8")
+    return text
+
+
 def replace_text(path, text):
     """Write a file in one step: a crash leaves the old or the new one, whole. Raises OSError."""
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".", ignore_cleanup_errors=True) as folder:

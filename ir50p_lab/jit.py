@@ -17,7 +17,9 @@ from pathlib import Path
 
 try:
     import numba
-except ImportError:
+except ModuleNotFoundError as missing:
+    if missing.name != "numba":  # one that is there and does not work is said, not replaced by a slow loop
+        raise
     numba = None
 
 from ir50p_lab.home import home

@@ -2,6 +2,7 @@
 
 import importlib.metadata
 import sys
+import traceback
 from pathlib import Path
 
 import lazy_loader
@@ -24,18 +25,32 @@ def attach(package, **names):
                 raise
             if isinstance(error, LabError):  # it says what to do by itself, as in a browser tab
                 raise
-            text = f"{package}.{name} could not be loaded: {type(error).__name__}: {error}."
-            raise DependencyError(f"{text} {_remedy(error)}") from error
+            raise failed(f"{package}.{name}", error) from error
 
     return load_named, dir_of, everything
 
 
-def _remedy(error):
-    """What to do: rename a file beside the notebook that hides a package, set up what is missing, or ask the doctor."""
-    packages = importlib.metadata.packages_distributions().keys() | sys.stdlib_module_names
-    hiding = [path.name for path in sorted(Path.cwd().glob("*.py")) if path.stem in packages]
+def failed(what, error):
+    """Return the DependencyError for an ImportError or AttributeError while `what` was loaded: cause and remedy."""
+    text = f"{what} could not be loaded: {type(error).__name__}: {error}."
+    hiding = _hiding(error)
     if hiding:
-        return f"{Path.cwd() / hiding[0]} hides the package {hiding[0][:-3]}: rename it, then restart the kernel."
+        return DependencyError(f"{text} {hiding} hides the package {hiding.stem}: rename it, then restart the kernel.")
     if isinstance(error, ModuleNotFoundError):
-        return f"The package {error.name} is not installed: 'python3 -m ir50p_lab setup' installs all of them."
-    return "A package is damaged, or of a version that does not fit: 'python3 -m ir50p_lab doctor' says which."
+        setup = "'python3 -m ir50p_lab setup' installs all of them"
+        return DependencyError(f"{text} The package {error.name} is not installed: {setup}.")
+    doctor = "'python3 -m ir50p_lab doctor' says which"
+    return DependencyError(f"{text} A package is damaged, or of a version that does not fit: {doctor}.")
+
+
+def _hiding(error):
+    """The file or folder beside the notebook that was loaded in the place of a package, None if there is none."""
+    packages = importlib.metadata.packages_distributions().keys() | sys.stdlib_module_names
+    loaded = [frame.filename for frame in traceback.extract_tb(error.__traceback__)]
+    loaded += [getattr(module, "__file__", None) for module in list(sys.modules.values())]
+    for file in filter(None, loaded):
+        if Path(file).is_relative_to(Path.cwd()):
+            beside = Path.cwd() / Path(file).relative_to(Path.cwd()).parts[0]
+            if beside.stem in packages and beside.stem != "ir50p_lab":
+                return beside
+    return None

@@ -34,6 +34,29 @@ def test_the_cause_is_kept_and_the_file_that_hides_a_package_is_named(tmp_path, 
     assert f"{package}.py hides the package {package}: rename it" in said
 
 
+def test_a_folder_that_hides_a_package_is_named_and_a_file_that_nobody_loads_is_not(tmp_path):
+    (tmp_path / "code.py").touch()
+    (tmp_path / "cv2").mkdir()
+    (tmp_path / "cv2" / "__init__.py").touch()
+    said = last_line(USERS["cv2"], tmp_path)
+    assert f"{tmp_path / 'cv2'} hides the package cv2: rename it" in said
+
+
+@pytest.mark.parametrize(
+    ("package", "text", "code"),
+    [
+        ("numba", "raise ImportError('Numba needs NumPy 2.0 or less')", USERS["numba"]),
+        ("serial", "", "from ir50p_lab.bench import connect; connect()"),
+    ],
+)
+def test_what_a_browser_tab_does_without_is_not_done_without_where_it_fails(tmp_path, package, text, code):
+    """A numba that does not work is no reason for slow loops, nor a hidden pyserial for a bench without a board."""
+    (tmp_path / f"{package}.py").write_text(text)
+    said = last_line(code, tmp_path)
+    assert said.startswith("ir50p_lab.errors.DependencyError: ")
+    assert f"{package}.py hides the package {package}: rename it" in said
+
+
 def test_a_name_that_does_not_exist_is_told_as_ever(tmp_path):
     assert "cannot import name 'calibrato'" in last_line("from ir50p_lab.vision import calibrato", tmp_path)
 

@@ -34,3 +34,9 @@ def test_what_is_named_exists(path):
     known = {*commands._MODULES, "setup", "doctor", "help"}
     for command in re.findall(r"python3? -m ir50p_lab ([a-z][a-z-]+)\b", text):
         assert command in known, command
+
+
+def test_nbval_is_documented_as_ci_runs_it():
+    line = "pytest --nbval --nbval-current-env -n auto --dist loadfile --nbval-cell-timeout=600 "
+    for place in (".ci/run", "docs/instructor.md", "docs/developing.md"):
+        assert f".venv/bin/python -m {line}" in (ROOT / place).read_text("utf-8"), place

@@ -36,3 +36,10 @@ if (!views.length) {
   three[0].parts.box.closest(".row").insertAdjacentElement("beforebegin", button);
   button.addEventListener("click", () => three.forEach(({ player }) => { player.seek(0); player.play(); }));
 }
+
+// Where the site of the browser tab lies beside this page, the page leads there.
+if (location.protocol.startsWith("http")) {
+  const { ok } = await fetch("lab/index.html", { method: "HEAD" }).catch(() => ({ ok: false }));
+  if (ok) document.querySelector("p strong").parentElement.insertAdjacentHTML("beforeend",
+    " <b><a href='lab/'>Begin with notebook 00</a> in this very browser, without installing anything.</b>");
+}

@@ -5,6 +5,7 @@ from collections import namedtuple
 
 from ir50p_lab.errors import PortError
 from ir50p_lab.launcher.boards import board_name, permission_remedy
+from ir50p_lab.lazy import failed
 
 
 class Port(namedtuple("Port", "device board")):
@@ -15,8 +16,10 @@ def list_ports():
     """All serial ports of this computer, those of a Mega 2560 first, then chips of its clones, then the others."""
     try:
         from serial.tools import list_ports
-    except ImportError:  # a browser tab has no ports
-        return []
+    except ModuleNotFoundError as missing:
+        if missing.name == "serial":  # a browser tab has no ports
+            return []
+        raise failed("the list of serial ports", missing) from missing
     ports = [Port(port.device, board_name(port.vid, port.pid)) for port in sorted(list_ports.comports())]
     return sorted(ports, key=lambda port: (port.board is None, "chip" in str(port.board)))
 

@@ -93,7 +93,7 @@ class Controller:
             said = f"t = {t:.6g} s after {before:.6g} s: time runs backwards, and this step counts as none"
             warnings.warn(f"{said}; call reset() before another run", stacklevel=2)
         law.law_step(self.parameters, self.state, float(t), _plain(measured), _plain_rows(reference), u)
-        if not math.isfinite(u[0] + u[1] + u[2]):
+        if not math.isfinite(u[0] + u[1] + u[2] + t):
             vectors3("measured q", measured)
             vectors3("reference", reference, unit="rad, rad/s, rad/s^2")
             raise InputError(f"the command is {u.tolist()} at t = {t} s; the controller's state is spoilt: reset it")

@@ -7,6 +7,7 @@ from ir50p_lab.inputs import number, vectors3
 from ir50p_lab.jit import jit
 from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.dynamics import STANDARD_GRAVITY
+from ir50p_lab.modelling.kernel import warn_of_degrees
 
 
 @jit()
@@ -68,6 +69,7 @@ def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
     q, qd, qdd = (vectors3(name, value, unit="SI") for name, value in (("q", q), ("qd", qd), ("qdd", qdd)))
     if q.ndim > 2 or qd.shape != q.shape or qdd.shape != q.shape:
         raise InputError(f"q {q.shape}, qd {qd.shape}, qdd {qdd.shape}: give all (3,), or all (n, 3) with the same n")
+    warn_of_degrees(None, q)
     g = number("g", g, ">= 0", unit="m/s^2", hint="the base z axis points up")
     direction = np.tanh(qd / number("sign", sign, "> 0", unit="rad/s")) if sign is not None else np.sign(qd)
     rows = [np.ascontiguousarray(x).reshape(-1, 3) for x in (q, qd, qdd, direction)]

@@ -88,8 +88,8 @@ def check_signals(warned, t, q, u, turns=TURNS):
         warned.refuse(f"q takes only {values} values: no motion can be seen; use a finer sensor")
     _hung(warned, np.delete(t, places), np.delete(q, places))
     _clipped(warned, np.delete(t, places), np.delete(q, places))
-    if np.ptp(q) > turns:
-        warned.add(f"q spans {np.ptp(q):.4g} rad: is it in degrees? Use np.radians(q)")
+    if (span := np.ptp(np.delete(q, places))) > turns:
+        warned.add(f"q spans {span:.4g} rad: is it in degrees? Use np.radians(q)")
     if np.diff(t).min() > _SLOW_CLOCK:
         warned.add(f"one sample every {sampling_period(t):.4g} s: is t in ms or microseconds? Give seconds")
     new = _new(warned, np.delete(t, failed), np.delete(q, failed))
@@ -105,23 +105,26 @@ def _on_grid(x):
 
 
 def _failed_readings(warned, t, q):
-    """Warn of samples at which q leaps to one value, always the same, and soon back. Returns their indices.
+    """Warn of samples at which q leaps to a value, stays or comes again, and is soon back. Returns their indices.
 
     So it looks when a sensor or its link answers 0 now and then; an angle that is wrapped moves on after its leap.
     """
     step = np.diff(q)
     usual = np.median(np.abs(step)) if len(step) else 0.0
-    far = np.flatnonzero(np.abs(step) > max(_SPIKE * np.ptp(q), 15 * usual))
+    span = np.diff(np.quantile(q, (0.02, 0.98)))[0]
+    far = np.flatnonzero(np.abs(step) > max(_SPIKE * span, 15 * usual))
     stays = [(a + 1, b + 1) for a, b in pairwise(far) if b - a <= _FAILED]
     stays = [(a, b) for a, b in stays if np.ptp(q[a:b]) == 0 and abs(q[b] - q[a - 1]) < 0.4 * abs(step[a - 1])]
     values, counts = np.unique([q[a] for a, _ in stays], return_counts=True)
-    if not len(values) or counts.max() < _FAILED_TIMES:
-        return np.empty(0, dtype=int)
-    value = values[np.argmax(counts)]
-    stays = [(a, b) for a, b in stays if q[a] == value]
-    said = f"q leaps to {value:.4g} and back {len(stays)} time(s), first at t = {t[stays[0][0]]:.6g} s"
-    warned.add(f"{said}: failed readings of the sensor, left out")
-    return np.concatenate([np.arange(a, b) for a, b in stays])
+    lasting = [q[a] for a, b in stays if b - a > 1]  # what leaps for one sample only, and once, is an outlier
+    values = values[(counts >= _FAILED_TIMES) | np.isin(values, lasting)]
+    at = np.flatnonzero(np.isin(q, values))  # near the true angle the leap is small: a known value is enough
+    stays = [at[a:b] for a, b in runs(at.astype(float), 1.5) if b - a <= _FAILED]
+    if not len(values):
+        return at
+    said = f"q leaps to {', '.join(f'{value:.4g}' for value in values[:3])} and back {len(stays)} time(s)"
+    warned.add(f"{said}, first at t = {t[stays[0][0]]:.6g} s: failed readings of the sensor, left out")
+    return np.concatenate(stays)
 
 
 def _check_jumps(warned, name, t, x):
@@ -279,8 +282,10 @@ def check_clipped_drive(warned, found):
         warned.add(f"u may have been clipped: {said}; {remedy}")
 
 
-def without_sign(found):
+def without_sign(found, with_speed):
     """A sentence if u, or the speed, was recorded as a size without its sign and the other's sign explains it; else "".
+
+    with_speed: whether qd was measured, and is what lacks its sign.
 
     A current sensor gives such a u, PWM counts beside a direction pin do, and one channel of an encoder such a q.
     """
@@ -292,10 +297,12 @@ def without_sign(found):
         said = "u has one sign only, that of a size, and u * np.sign(qd) fits: give u with the sign of its direction"
     else:
         A, y = found.A * np.sign(found.y)[:, None], found.y
-        mend = "np.cumsum(np.abs(np.diff(q, prepend=q[0])) * np.sign(u))"
-        said = (
-            f"the joint moves one way only though u changes its sign, and with the sign of u it fits: give {mend} as q"
+        mend = (
+            "np.abs(qd) * np.sign(u) as qd"
+            if with_speed
+            else "np.cumsum(np.abs(np.diff(q, prepend=q[0])) * np.sign(u)) as q"
         )
+        said = f"the joint moves one way only though u changes its sign, and with the sign of u it fits: give {mend}"
     return said if least_squares(A, y, tolerance=1e-3).rms < _SIGNED * np.std(y) else ""
 
 

@@ -166,7 +166,7 @@ def fit_joint(
     period = 1 / runs[0].rate
     stderr = _widened(names, found, {"lower": lower.left, "faster": faster.left, **others}, period)
     parameters = dict(zip(names, (unit * np.column_stack([found.left.x, stderr])).tolist(), strict=True))
-    _check_fit(warned, found, others, "gravity" in terms)
+    _check_fit(warned, found, others, "gravity" in terms, runs[0].angles.shape[1] == 2)
     recording_checks.check_clipped_drive(warned, found)
     _check_parameters(warned, parameters, found, lower, others)
     _check_timing(warned, lower, others, period)
@@ -347,12 +347,12 @@ def _widened(names, found, others, period):
     return np.sqrt(stderr**2 + moved + (_EXACT * x) ** 2)
 
 
-def _check_fit(warned, found, others, with_gravity):
+def _check_fit(warned, found, others, with_gravity, with_speed):
     """Refuse, or warn of, what the residual shows."""
     left, gravity = found.left, others.get("gravity", found.left).rms / found.left.rms
     explained = 1 - (found.misfit * gravity) ** 2
     F = explained / 5 / max((1 - explained) / max(left.independent - 6, 1), 1e-300)
-    if found.misfit > _POOR and (sentence := recording_checks.without_sign(found)):
+    if found.misfit > _POOR and (sentence := recording_checks.without_sign(found, with_speed)):
         warned.refuse(sentence)
     elif explained < _EXPLAINED or (F < _F and explained < 0.5):
         share = f"{max(explained, 0):.1%} of it (F = {F:.1f}, needed {_F:.0f}; too few independent samples?)"

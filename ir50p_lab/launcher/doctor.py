@@ -17,18 +17,20 @@ def report(environment, *, here=False):
     _line("System", f"{platform.platform()} {platform.machine()}")
     _line("Project", root)
     fault, cure = "", f"'{COMMAND} --here' prints the command that installs it"
+    in_force = sorted(UNWANTED & os.environ.keys())
     if not here:
         fault = environment.fault()
         cure = f"Run '{COMMAND}' to set up" if fault else f"Run '{COMMAND} setup --rebuild'"
         _line("Environment", f"{environment.folder}: {fault or 'ready'}")
     else:
-        for name, value in sorted(os.environ.items()):
-            if name in UNWANTED:
-                _line("Variables", f"{name}={value} (in force with --here)")
+        for name in in_force:
+            _line("Variables", f"{name}={os.environ[name]} (in force with --here)")
     found, faults = None, [f"the environment is {fault}"]
     if not fault:
         found, error = environment.look_inside(here=here)
         faults = _packages(found, here) if found else [f"the environment does not answer ({error})"]
+        if here and "PYTHONPATH" in in_force and (not found or found["broken"]):
+            cure = "Unset PYTHONPATH, whose folders come before the packages that are installed, and ask again"
     _line("Free disk", f"{shutil.disk_usage(root).free / 1e9:.1f} GB (the set-up needs 2)")
     if "IR50P_ARM" in os.environ:
         from ir50p_lab.home import path_setting, setting  # beside the launcher, but of the standard library, too

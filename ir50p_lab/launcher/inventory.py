@@ -47,7 +47,10 @@ def direct_dependencies(root):
 
 
 def broken_imports(distributions):
-    """Import what the distributions hold, and every module of the lab book: {module: why it cannot be imported}."""
+    """Import what the distributions hold, and every module of the lab book: {module: why it cannot be imported}.
+
+    The modules only if all else can be imported: what they need is named then.
+    """
     names = [
         name
         for name, sources in importlib.metadata.packages_distributions().items()
@@ -56,7 +59,7 @@ def broken_imports(distributions):
     broken = {}
     for name in [*names, *_STARTED]:
         _try_import(name, broken)
-    for module in pkgutil.walk_packages(_try_import("ir50p_lab", broken), "ir50p_lab."):
+    for module in pkgutil.walk_packages([] if broken else _try_import("ir50p_lab", broken), "ir50p_lab."):
         if not module.name.endswith("__main__"):
             _try_import(module.name, broken)
     return broken

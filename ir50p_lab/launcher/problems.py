@@ -10,6 +10,10 @@ from pathlib import Path
 
 _PYTHON = "py" if os.name == "nt" else "python3"
 COMMAND = f"{_PYTHON} -m ir50p_lab"
+#: Variables that tell pip and uv where and how to download, and folders where their files lie on the three systems.
+_SETTINGS = r"(UV|PIP)_|(HTTPS?|ALL|NO)_PROXY$|SSL_CERT_(FILE|DIR)$|(REQUESTS|CURL)_CA_BUNDLE$"
+_ROOTS = ("/etc", "/etc/xdg", "/Library/Application Support")
+_HOME_ROOTS = ("", ".config", ".pip", "Library/Application Support")
 
 
 class SetUpError(Exception):
@@ -38,7 +42,8 @@ def from_output(output, code, folder, log):
     problem = _known("\n".join([*lines, f"exit code {code}"]), folder) or SetUpError(
         f"The set-up failed: {said}. All that was printed is in {log}; then run '{COMMAND}' again."
     )
-    addresses = re.findall(r"https?://[^\s'\"`<>),]+", "\n".join(errors or lines[-5:]))
+    address = r"https?://[^\s'\"`<>),]+"
+    addresses = re.findall(address, "\n".join(errors)) or re.findall(address, "\n".join(lines))
     tried = f" Address tried last: {_without_password(addresses[-1])}." if addresses else ""
     return type(problem)(f"{problem}{tried}{in_force(folder)}")
 
@@ -48,9 +53,11 @@ def in_force(folder):
     found = [
         f"{name}={_without_password(value)}"
         for name, value in sorted(os.environ.items())
-        if value and re.match(r"(UV|PIP)_|(HTTPS?|ALL)_PROXY$|SSL_CERT_FILE$", name, re.IGNORECASE)
+        if value and re.match(_SETTINGS, name, re.IGNORECASE)
     ]
-    roots = (Path.home() / ".config", Path(os.environ.get("APPDATA", "/etc")), Path("/etc"), Path.home() / ".pip")
+    roots = [os.environ.get(name, "") for name in ("APPDATA", "PROGRAMDATA", "XDG_CONFIG_HOME", "XDG_CONFIG_DIRS")]
+    roots = [Path(root) for root in os.pathsep.join([*roots, *_ROOTS]).split(os.pathsep) if root]
+    roots += [Path.home() / root for root in _HOME_ROOTS]
     files = [Path(folder, "uv.toml")]
     files += [root / name for root in roots for name in ("uv/uv.toml", "pip/pip.conf", "pip/pip.ini", "pip.conf")]
     found += [str(file) for file in dict.fromkeys(files) if file.is_file()]

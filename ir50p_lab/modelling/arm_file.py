@@ -7,6 +7,7 @@ from pathlib import Path
 import tomlkit
 
 from ir50p_lab.errors import ArmError, LabError
+from ir50p_lab.home import read_text
 from ir50p_lab.modelling.actuators import Actuators
 from ir50p_lab.modelling.friction import Friction
 
@@ -40,11 +41,9 @@ def read_arm(cls, path):
     known (with the known ones), or describes an impossible arm.
     """
     try:
-        data = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+        data = tomllib.loads(read_text(path, ArmError))
     except OSError as error:
         raise ArmError(f"cannot read the arm file {path}: {error.strerror}; check the path or IR50P_ARM") from None
-    except UnicodeDecodeError:
-        raise ArmError(f"{path} is not in UTF-8: open it in an editor and save it with the encoding UTF-8") from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise ArmError(f"{path} is not a TOML file: {error}. Write one with Arm.save and edit it") from None
     try:

@@ -55,7 +55,7 @@ def _evaluate(function, arm, g=None, **vectors):
     else:
         constants = as_theta(arm, g)
     result = evaluate(function, constants, lambda: as_theta(arm, g), **vectors)
-    warn_of_degrees(arm, vectors["q"], stacklevel=4)
+    warn_of_degrees(arm, vectors["q"])
     return result
 
 

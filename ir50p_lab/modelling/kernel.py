@@ -1,6 +1,7 @@
 """One state or many: functions of one state as NumPy's generalised ufuncs, and the errors they raise."""
 
 import re
+import sys
 import warnings
 from contextlib import nullcontext
 from functools import cache
@@ -78,8 +79,11 @@ def evaluate(kernel, constants, check=None, /, **vectors):
         return kernel()(*(check() if check else constants), *same_shape(**vectors))
 
 
-def warn_of_degrees(arm, q, *, stacklevel=3):
-    """Warn of angles q (..., 3) more than a turn beyond the arm's limits (of an arm without limits: beyond four)."""
+def warn_of_degrees(arm, q):
+    """Warn of angles q (..., 3) more than a turn beyond the arm's limits (without limits: beyond four turns).
+
+    The warning points at the line outside this package that gave them.
+    """
     q = np.asarray(q)
     if q.size == 3 and np.vdot(q, q) < _TURN**2:  # the usual case, at no cost
         return
@@ -87,7 +91,10 @@ def warn_of_degrees(arm, q, *, stacklevel=3):
     beyond = np.abs(q) - np.where(np.isfinite(limits), limits, 3 * _TURN)
     if (beyond > _TURN).any():
         said = "q has an angle more than a turn beyond the arm's limits: angles are in radians"  # one text: said once
-        warnings.warn(f"{said} (np.radians turns degrees into them)", SuspiciousAngleWarning, stacklevel=stacklevel)
+        level, caller = 2, sys._getframe(1)
+        while caller.f_back and str(caller.f_globals.get("__name__")).startswith("ir50p_lab."):
+            level, caller = level + 1, caller.f_back
+        warnings.warn(f"{said} (np.radians turns degrees into them)", SuspiciousAngleWarning, stacklevel=level)
 
 
 def same_shape(**vectors):

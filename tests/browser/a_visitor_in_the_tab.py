@@ -94,13 +94,51 @@ def opened(context, address):
     return page
 
 
+def told(page, pattern):
+    """What docs/`page` tells."""
+    return re.search(pattern, " ".join((ROOT / "docs" / page).read_text("utf-8").split())).groups()
+
+
+def megabytes(*paths):
+    return sum(path.stat().st_size for path in paths if path.is_file()) / 1e6
+
+
+LOADED = r"(\d+) MB, of which (\d+) are loaded before the first cell of 00 can run; SciPy, another (\d+),"
+
+
 @pytest.mark.notebook
-def test_what_a_visitor_writes_in_the_tab_stays_and_goes_home(browser, site, tmp_path):
+def test_it_is_as_large_and_as_old_as_is_told(site):
+    everything, _, scipy = map(int, told("where_it_runs.md", LOADED))
+    pyodide = site / "lab" / "static" / "pyodide"
+    assert megabytes(*(site / "lab").rglob("*")) == pytest.approx(everything, rel=0.05)
+    assert megabytes(*pyodide.glob("scipy-*"), *pyodide.glob("*openblas-*")) == pytest.approx(scipy, rel=0.05)
+    pins = told(
+        "developing.md", r"With Pyodide 0\.27\.7 it is jupyterlite-core (\S+) and jupyterlite-pyodide-kernel (\S+)\. "
+    )
+    assert list(pins) == list(FITS_IT.values())
+
+
+@pytest.mark.notebook
+def test_what_a_visitor_writes_in_the_tab_stays_and_goes_home(browser, site, tmp_path, monkeypatch):
+    sent = []
+
+    def counted(handler, source, output):
+        sent.append(os.fstat(source.fileno()).st_size / 1e6)
+        shutil.copyfileobj(source, output)
+
+    monkeypatch.setattr(Quiet, "copyfile", counted)
     context = browser.new_context(viewport={"width": 1366, "height": 768}, accept_downloads=True)
     with served(site) as address:
-        page = opened(context, f"{address}/lab/")
+        page = context.new_page()
+        page.goto(f"{address}/index.html")
+        link = page.get_by_role("link", name="Begin with notebook 00")
+        link.wait_for()
+        sent.clear()
+        link.click()
+        page.wait_for_function(KERNEL_IDLE, timeout=300_000)
         assert "00_start_here.ipynb" in page.url
         run(page, number_of(page, "import numpy as np"))
+        assert sum(sent) == pytest.approx(int(told("where_it_runs.md", LOADED)[1]), rel=0.1)
         run(page, number_of(page, "run = Recording.load"))
         page.wait_for_selector(".la canvas", timeout=60_000)
         guess = number_of(page, 'predict("start.level_joint"')
@@ -146,7 +184,7 @@ def test_what_a_visitor_writes_in_the_tab_stays_and_goes_home(browser, site, tmp
     context.close()
     environment = os.environ | {"IR50P_HOME": str(tmp_path / "laptop")}
     command = [sys.executable, "-m", "ir50p_lab.course.lab_book.update", str(tmp_path / "mine.zip")]
-    told = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True).stdout
-    assert "Taken over" in told, told
+    printed = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True).stdout
+    assert "Taken over" in printed, printed
     for name in ("my_robot/_rot_z.py", "my_robot/_dh_matrix.py", "results/lab_book.json"):
         assert (tmp_path / "laptop" / name).is_file()

@@ -166,3 +166,5 @@ def test_time_that_runs_backwards_is_said():
         pid.step(4.99, ZERO, hold(0, 0, 0))
     pid.reset()
     pid.step(0.0, ZERO, hold(0, 0, 0))  # another run: no word
+    with pytest.raises(InputError, match="at t = nan s"):
+        pid.step(np.nan, ZERO, hold(0, 0, 0))

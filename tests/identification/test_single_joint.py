@@ -572,6 +572,24 @@ def test_failed_readings_are_named_and_left_out(machine, value, length):
 
 
 @machines
+def test_readings_that_fail_to_two_values_and_within_the_range_of_the_motion(machine):
+    t, q, u = recorded(machine, 4)
+    q = q - np.quantile(q, 0.3)
+    for k, value in zip(range(60, len(t) - 60, len(t) // 9), [0.0, 9.0 * np.ptp(q)] * 9, strict=False):
+        q[k : k + 4] = value
+    found = fit_joint(t, q, u)
+    check(found, machine, 0.1)
+    assert any("q leaps to 0, " in text for text in found.warnings)
+    assert not any("degrees" in text for text in found.warnings)
+
+
+@machines
+def test_a_speed_without_its_sign_is_mended_as_a_speed(machine):
+    t, q, u = recorded(machine, 5)
+    refused("give np.abs(qd) * np.sign(u) as qd", t, None, u, qd=np.abs(np.gradient(q, t)))
+
+
+@machines
 def test_a_size_without_its_sign_is_told_how_to_get_it_back(machine):
     t, q, u = recorded(machine, 5)
     refused("u has one sign only", t, q, np.abs(u))

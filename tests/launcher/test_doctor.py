@@ -90,6 +90,18 @@ def test_here_reports_on_the_running_python(project):
     assert "--here' prints the command" in last
 
 
+def test_here_a_path_of_python_is_the_first_to_blame(project, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", "/somewhere")
+    code, text, last = report(project, FOUND | {"broken": {"pebble": "ImportError: no"}}, here=True)
+    assert code == 1 and "PYTHONPATH=/somewhere (in force with --here)" in text
+    assert "pebble cannot be imported. Unset PYTHONPATH" in last
+
+
+def test_a_package_that_is_broken_is_named_and_not_all_that_needs_it(monkeypatch):
+    monkeypatch.setattr(inventory, "_STARTED", ("no_such_package",))
+    assert list(inventory.broken_imports([])) == ["no_such_package"]
+
+
 def test_serial_ports(made):
     ports = [
         {"device": "/dev/null", "vid": 0x2341, "pid": 0x0043, "description": "Arduino Uno"},

@@ -210,6 +210,42 @@ def test_settings_in_force_are_named(tmp_path, monkeypatch):
     assert "64-bit" not in text
 
 
+@pytest.mark.parametrize(
+    ("variable", "file"),
+    [
+        ("XDG_CONFIG_HOME", "uv/uv.toml"),
+        ("XDG_CONFIG_DIRS", "pip/pip.conf"),
+        ("PROGRAMDATA", "pip/pip.ini"),
+        ("HOME", "Library/Application Support/pip/pip.conf"),
+    ],
+)
+def test_files_of_settings_are_found_where_each_system_has_them(tmp_path, monkeypatch, variable, file):
+    monkeypatch.setenv(variable, str(tmp_path))
+    (tmp_path / file).parent.mkdir(parents=True)
+    (tmp_path / file).touch()
+    assert str(tmp_path / file) in problems.in_force("lab")
+
+
+UV_CANNOT_CONNECT = """DEBUG Searching for a compatible version of basalt
+error: Request failed after 3 retries
+  cause: error sending request for url (http://user:secret@127.0.0.1:9/simple/basalt/)
+  cause: tcp connect error"""
+PIP_FOUND_NO_INDEX = """Looking in indexes: http://user:secret@127.0.0.1:9/simple
+Could not fetch URL http://user:secret@127.0.0.1:9/simple/basalt/: connection error - skipping
+ERROR: No matching distribution found for basalt==2.0
+Traceback:
+  one
+  two
+  three
+  four"""
+
+
+@pytest.mark.parametrize("output", [UV_CANNOT_CONNECT, PIP_FOUND_NO_INDEX])
+def test_the_address_that_was_tried_is_named_wherever_it_stands(output):
+    text = str(problems.from_output(output, 1, Path("lab"), Path("log")))
+    assert "Address tried last: http://...@127.0.0.1:9/simple/basalt/" in text
+
+
 def test_a_32_bit_python_is_told_to_be_one(monkeypatch):
     monkeypatch.setattr(problems.sys, "maxsize", 2**31 - 1)
     error = problems.from_output("ERROR: No matching distribution found for basalt==2.0", 1, Path("lab"), Path("log"))

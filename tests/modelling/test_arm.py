@@ -134,11 +134,11 @@ def test_broken_files_are_named(text, words, tmp_path):
         assert word in str(caught.value)
 
 
-@pytest.mark.parametrize("encoding", ["latin-1", "utf-16"])
-def test_a_file_in_another_encoding_is_told_which_to_use(encoding, tmp_path):
+@pytest.mark.parametrize("encoding, letter", [("latin-1", "é"), ("utf-16", "é"), ("utf-16-le", "e")])
+def test_a_file_in_another_encoding_is_told_which_to_use(encoding, letter, tmp_path):
     path = tmp_path / "arm.toml"
     IR50P.save(path)
-    path.write_bytes(path.read_text("utf-8").replace("name = ", "name = 'é'  # ").encode(encoding))
+    path.write_bytes(path.read_text("utf-8").replace("name = ", f"name = '{letter}'  # ").encode(encoding))
     with pytest.raises(ArmError, match=r"arm\.toml is not in UTF-8: .* save it with the encoding UTF-8"):
         Arm.load(path)
 

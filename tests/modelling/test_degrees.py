@@ -7,6 +7,7 @@ import pytest
 
 from ir50p_lab import modelling as m
 from ir50p_lab.errors import SuspiciousAngleWarning
+from ir50p_lab.identification import regressor
 from ir50p_lab.simulation import simulate
 
 ZERO = np.zeros(3)
@@ -15,6 +16,9 @@ TAKES_ANGLES = {
     "forward_kinematics": m.forward_kinematics,
     "frames": m.frames,
     "jacobian": m.jacobian,
+    "transform": lambda arm, q: m.transform(arm, q, 0, 3),
+    "energy": lambda arm, q: m.energy(arm, q, 0 * np.asarray(q)),
+    "regressor": lambda arm, q: regressor(q, 0 * np.asarray(q), 0 * np.asarray(q)),
     "mass_matrix": m.mass_matrix,
     "coriolis_matrix": lambda arm, q: m.coriolis_matrix(arm, q, 0 * np.asarray(q)),
     "gravity": m.gravity,

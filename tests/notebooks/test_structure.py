@@ -10,6 +10,7 @@ from notebook_runner import FOLDER, NOTEBOOKS, REWRITTEN
 
 from ir50p_lab.course.checking.numbers import everything
 from ir50p_lab.course.checking.tasks import task
+from ir50p_lab.course.lab_book.names import titles
 from ir50p_lab.course.robot.catalogue import NOTEBOOKS as FUNCTIONS
 from ir50p_lab.course.robot.catalogue import STAGES, is_function
 
@@ -216,6 +217,15 @@ def test_each_notebook_leads_to_the_next():
 
 def test_every_exercise_has_its_notebook():
     assert set(NUMBERS.values()) <= {path.stem for path in NOTEBOOKS}
+
+
+def test_every_number_of_the_lab_book_has_a_title():
+    """The report says in words what was predicted or measured: names.txt."""
+    asked = set()
+    for path in NOTEBOOKS:
+        for cell in cells(nbformat.read(path, as_version=4), "code"):
+            asked.update(re.findall(r'^ *(?:predict|measured)\("([\w.]+)"', cell.source, re.M))
+    assert len(asked) > 100 and asked <= set(titles()), asked - set(titles())
 
 
 def top_level_names(source):

@@ -39,6 +39,6 @@ def so_far():
     ax.axvline(30, label="the ball's radius", **SETPOINT)
     ax.set(xscale="log", xlim=(0.007, 6000), ylim=(len(_WAYS) - 0.5, -0.5), xlabel="miss [mm]")
     ax.set_yticks(range(len(_WAYS)), _WAYS)
-    ax.set_title("Missed: the ball at (0.42, −0.15, 0.03) m")
-    ax.legend(loc="lower right")
+    ax.set_title("Missed: the ball at (0.42, −0.15, 0.03) m", loc="left")
+    ax.legend(loc="lower right", bbox_to_anchor=(1, 1), frameon=False)
     return figure

@@ -1,5 +1,6 @@
 """`python3 -m ir50p_lab update FOLDER|FILE.zip`: take over what is the student's from another copy of the course."""
 
+import json
 import shutil
 import sys
 import tempfile
@@ -31,7 +32,11 @@ def take_over(folder, named=None):
     print(f"Taken over from {named or older}: {len(files) - len(left)} files, into {home()}")
     if (home() / "old").is_dir():
         print(f"The older notebooks are beside the new ones, in {home() / 'old'}")
-    foreign = [str(path) for path in files if path.suffix == ".py" and "\ufffd" in path.read_text("utf-8", "replace")]
+    foreign = [
+        str(path)
+        for path in files
+        if path.suffix == ".py" and {"\0", "\ufffd"} & set(path.read_text("utf-8", "replace"))
+    ]
     if foreign:
         print(f"Save with the encoding UTF-8, or Python cannot read them: {', '.join(foreign)}")
     print(f"Left where they are, because they cannot be read or are different here: {', '.join(left) or 'none'}")
@@ -47,13 +52,15 @@ def _take_over_zip(file):
 
 
 def _copied(path, target):
-    """Copy a file unless there is one; tell whether both are equal now."""
+    """Copy a file unless there is one; tell whether both are equal now. What should be JSON and is not stays behind."""
     try:
+        if path.suffix in (".ipynb", ".json"):  # cut off, of zeros, half merged, or only a place holder of a cloud
+            json.loads(path.read_text("utf-8-sig"))
         if not target.exists():
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, target)
         return target.read_bytes() == path.read_bytes()
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 

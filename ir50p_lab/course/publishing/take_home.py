@@ -70,7 +70,7 @@ def main():
     """Write the ZIP into this folder, with the recordings, and say what to do with it."""
     path = Path(f"ir50p_{date.today():%Y-%m-%d}.zip").resolve()
     path.write_bytes(packed((*_FOLDERS, "recordings")))
-    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB, with functions, results, recordings and reports of bench-test")
+    print(f"{path}: {path.stat().st_size / 1000:.0f} kB, with functions, results, recordings and reports of bench-test")
 
 
 if __name__ == "__main__":

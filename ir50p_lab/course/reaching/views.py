@@ -21,7 +21,7 @@ def looks_figure(tips, goal, lens, names=("one look", "two looks")):
             fill = COLOURS[colour] if k else "none"
             ax.plot(*off[:, k].T, "o", mfc=fill, color=COLOURS[colour], label=f"after {name}")
         ax.plot(0, 0, "+", color=COLOURS["dark"], ms=14)
-        ax.set(xlim=(-16, 16), ylim=(-16, 16), aspect="equal")
+        ax.set(xlim=(-22, 22), ylim=(-22, 22), aspect="equal")
     along.axhline(0, color=COLOURS["dark"], ls=":", lw=1)
     seen.set(xlabel="to the right [mm]", ylabel="upwards [mm]", title="As the camera sees them")
     along.set(xlabel="away from the camera [mm]", ylabel="to the right [mm]", title="Along the line of sight (dotted)")

@@ -32,10 +32,7 @@ def path_of(name) -> Path:
 
 def read(path):
     """Return the text of a file of a function. Raises LabError if another program has saved it in another encoding."""
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise LabError(f"{path} is not in UTF-8: open it in an editor and save it with the encoding UTF-8") from None
+    return home.read_text(path, LabError)
 
 
 def is_there(name):

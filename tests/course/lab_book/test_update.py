@@ -18,14 +18,14 @@ def older(tmp_path, monkeypatch):
     notebooks = tmp_path / "older" / "notebooks"
     for name in (*_OWN, "01_rotations.ipynb"):
         (notebooks / name).parent.mkdir(parents=True, exist_ok=True)
-        (notebooks / name).write_text(name)
+        (notebooks / name).write_text(f'"{name}"')
     return notebooks
 
 
 def test_what_is_the_students_comes_along(older, tmp_path, capsys):
     take_over(str(older.parent))
     for name in (*_OWN, "old/01_rotations.ipynb"):
-        assert (tmp_path / "home" / name).read_text() == name.removeprefix("old/")
+        assert (tmp_path / "home" / name).read_text() == f'"{name.removeprefix("old/")}"'
     said = capsys.readouterr().out.splitlines()
     assert len(said) == 3 and ": 5 files" in said[0] and said[2].endswith(": none")
 
@@ -46,6 +46,14 @@ def test_a_notebook_that_cannot_be_read_is_named(older, tmp_path, monkeypatch, c
     monkeypatch.setattr("shutil.copyfile", refuse)
     take_over(str(older.parent))
     assert "01_rotations.ipynb" in capsys.readouterr().out.splitlines()[2]
+
+
+@pytest.mark.parametrize("content", [b"", b"\0" * 4096, b"<<<<<<< HEAD\n{}", b'{"cells": ['])
+def test_a_notebook_that_holds_none_is_named_and_stays(older, tmp_path, capsys, content):
+    (older / "01_rotations.ipynb").write_bytes(content)
+    take_over(str(older.parent))
+    assert "01_rotations.ipynb" in capsys.readouterr().out.splitlines()[-1]
+    assert not (tmp_path / "home" / "old").exists()
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permission bits and links of POSIX")

@@ -8,14 +8,15 @@ from ir50p_lab.course.publishing import report
 from ir50p_lab.errors import LabError
 
 
-@pytest.fixture(params=["latin-1", "utf-16", "cp1252"])
+@pytest.fixture(params=["latin-1", "utf-16", "cp1252", "utf-16-le"])
 def foreign(request, tmp_path, monkeypatch):
     """The student's folder with a rot_z in such a file."""
     monkeypatch.setenv("IR50P_HOME", str(tmp_path / "home"))
     folder = tmp_path / "home" / "my_robot"
     folder.mkdir(parents=True)
     (folder / "__init__.py").write_text("from ._rot_z import rot_z\n")
-    (folder / "_rot_z.py").write_bytes('def rot_z(angle):\n    return "é"\n'.encode(request.param))
+    letter = "e" if request.param == "utf-16-le" else "é"  # plain letters of two bytes are UTF-8, too
+    (folder / "_rot_z.py").write_bytes(f'def rot_z(angle):\n    return "{letter}"\n'.encode(request.param))
     return folder / "_rot_z.py"
 
 
