@@ -91,7 +91,7 @@ def running_lab(home, app="jupyterlab", **variables):
         yield f"{address}/{'lab/tree' if app == 'jupyterlab' else 'notebooks'}/{{}}?token={token}", server
     finally:
         server.terminate()
-        server.wait(20)
+        server.wait(60)
 
 
 def _wait_for(address, server, log):

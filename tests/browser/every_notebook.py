@@ -25,8 +25,9 @@ PIXELS = """(handle) => {
   while (!(picture = box.querySelector('img, canvas'))) box = box.parentElement;
   return picture.src || picture.toDataURL();
 }"""
-SAID = """() => [...document.querySelectorAll('.jp-OutputArea-output')].map((one) => one.textContent)
-  .filter((text) => /(?:Error|Warning)\\b/.test(text))"""
+#: What callbacks say in red under a panel; a cell may print the name of an error on purpose.
+SAID = """() => [...document.querySelectorAll('.jp-OutputArea [style*="8E1B0E"], .jp-OutputArea [style*="142, 27, 14"]')]
+  .map((one) => one.textContent).filter((text) => /(?:Error|Warning)\\b/.test(text))"""
 
 
 @pytest.fixture
