@@ -25,12 +25,12 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "identification": 1486,
     "vision": 2282,
     "course": 9248,  # without the next two
-    "course/publishing": 599,
+    "course/publishing": 725,
     "course/grading": 560,
-    "launcher": 586,
+    "launcher": 587,
     "root": 354,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_945, 20_839, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 20_072, 21_158, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -22,7 +22,8 @@ LAYERS = {
     "vision.reaching": MODELS | {"controllers", "bench", "vision"},  # the last step, alone
     "course": MODELS | {"controllers", "simulation", "bench", "identification", "vision", "vision.reaching"},
     "course.grading": {"course"},
-    "course.publishing": MODELS | {"bench", "course"},  # commands
+    "course.publishing": MODELS  # commands; the book's reference names what all subjects offer
+    | {"controllers", "simulation", "bench", "identification", "vision", "course"},
 }
 #: Rooms of `course` below all subjects, and what each builds on there.
 ROOMS = {

@@ -4,6 +4,7 @@
   python3 -m ir50p_lab test [...]     set up with the test tools, then run the tests and every notebook
                                       (--quick: no notebooks; --everywhere: as on other processors, other arms)
   python3 -m ir50p_lab export [...]   notebooks as pages that need no network: HTML, and PDF where a browser is
+  python3 -m ir50p_lab book [FOLDER]  all notebooks, the texts and a reference as a book with a search (default: book)
   python3 -m ir50p_lab targets [...]  measure what the project set out to reach, as tables beside the thesis
   python3 -m ir50p_lab setup          only set up (--rebuild: from nothing; --tests: with the test tools)
   python3 -m ir50p_lab bench-test     first power-on of the arm, joint by joint (rehearse: bench-test simulated)
@@ -47,6 +48,7 @@ _MODULES = {
     "targets": "tests.targets",
     "bench-test": "ir50p_lab.bench.bench_test",
     "export": "ir50p_lab.course.publishing",
+    "book": "ir50p_lab.course.publishing.book",
     "report": "ir50p_lab.course.publishing.report",
     "try-page": "ir50p_lab.course.publishing.try_page",
     "animation": "ir50p_lab.course.publishing.animation",

@@ -63,8 +63,8 @@ def lab(tmp_path_factory):
 
 
 @contextmanager
-def running_lab(home, **variables):
-    """A JupyterLab on a folder: the address of a notebook, with {} for its name, and the process."""
+def running_lab(home, app="jupyterlab", **variables):
+    """A JupyterLab (or `notebook`) on a folder: the address of a notebook, with {} for its name, and the process."""
     settings = home / "settings" / "@jupyterlab" / "notebook-extension"
     settings.mkdir(parents=True, exist_ok=True)
     (settings / "tracker.jupyterlab-settings").write_text(json.dumps({"windowingMode": "none"}))
@@ -80,7 +80,7 @@ def running_lab(home, **variables):
         "JUPYTER_TOKEN": token,
         "PYTHONPATH": str(Path(__file__).parents[2]),
     }
-    command = ["-m", "jupyterlab", "--no-browser", "--allow-root", f"--port={port}", "--expose-app-in-browser"]
+    command = ["-m", app, "--no-browser", "--allow-root", f"--port={port}", "--expose-app-in-browser"]
     command += ["--ServerApp.port_retries=0", f"--ServerApp.root_dir={home}", "--LabApp.news_url=None"]
     with open(home / "log", "w") as log:
         environment = os.environ | variables
@@ -88,7 +88,7 @@ def running_lab(home, **variables):
     address = f"http://127.0.0.1:{port}"
     try:
         _wait_for(f"{address}/api?token={token}", server, home / "log")
-        yield f"{address}/lab/tree/{{}}?token={token}", server
+        yield f"{address}/{'lab/tree' if app == 'jupyterlab' else 'notebooks'}/{{}}?token={token}", server
     finally:
         server.terminate()
         server.wait(20)

@@ -9,6 +9,7 @@ from pathlib import Path
 import nbformat
 import pytest
 import yaml
+from accessibility import fits, violations
 
 from ir50p_lab.course.publishing.__main__ import main
 from ir50p_lab.course.publishing.export import export
@@ -63,6 +64,29 @@ def test_a_browser_asks_for_nothing_and_shows_the_arm(pages, page):
     page.keyboard.press("ArrowRight")
     assert page.evaluate("() => document.querySelector('.la').liveArm.q[0]") == pytest.approx(0.01745, abs=1e-4)
     assert pages[1].suffix == ".pdf" and pages[1].read_bytes().startswith(b"%PDF")
+
+
+def test_a_page_fits_a_phone_and_can_be_read_by_everybody(tmp_path, page):
+    long = "a_name_that_is_longer_than_any_screen_of_a_phone_is_wide = forward_kinematics"
+    wide = ["| " + " | ".join(["`forward_kinematics`"] * 6) + " |", "|" + "---|" * 6, "| " + "1 |" * 6]
+    formula = "$$" + " + ".join(f"\\dot q_{{{k}}}" for k in range(30)) + "$$"
+    text = nbformat.v4.new_markdown_cell("\n\n".join(["# Wide", "\n".join(wide), formula, f"`{long}`"]))
+    code = nbformat.v4.new_code_cell(f"{long} = '{'x' * 200}'")
+    nbformat.write(nbformat.v4.new_notebook(cells=[text, code]), tmp_path / "wide.ipynb")
+    (written,) = export(tmp_path / "wide.ipynb", tmp_path, pdf=False, run=False)
+    page.set_viewport_size({"width": 420, "height": 900})
+    page.goto(written.as_uri())
+    fits(page, 420)
+    assert page.evaluate("() => document.querySelector('table').scrollWidth") > 420
+    assert violations(page) == {}
+
+
+def test_all_kinds_of_outputs_can_be_read_by_everybody(pages, page):
+    page.set_viewport_size({"width": 420, "height": 900})
+    page.goto(pages[0].as_uri())
+    page.wait_for_function("() => document.querySelector('.la')?.liveArm", timeout=60_000)
+    fits(page, 420)
+    assert violations(page) == {}
 
 
 def test_a_browser_without_webgl_keeps_the_picture(pages, chromium, browser_path):

@@ -1,6 +1,7 @@
 """The page to try: made from what is here now, and alive without a network."""
 
 import pytest
+from accessibility import fits, violations
 from PIL import Image
 
 from ir50p_lab.course.publishing.animation import PICTURE
@@ -78,3 +79,11 @@ def test_it_turns_drags_and_plays_with_the_network_off(page):
     page.mouse.up()
     assert page.evaluate(f"() => {views}[1].q") != pytest.approx(before, abs=0.02)
     assert [url for url in asked if not url.startswith(("data:", "blob:"))] == [PAGE.as_uri()]
+
+
+def test_everybody_can_read_it_on_any_screen(page):
+    page.goto(PAGE.as_uri())
+    page.wait_for_function("() => document.querySelectorAll('.la').length === 5", timeout=60_000)
+    assert violations(page) == {}
+    fits(page, 390)
+    assert violations(page) == {}

@@ -41,10 +41,10 @@ def test_a_student_sees_a_ball_and_goes_there(tmp_path):
     said = gone_through("16_images_and_ball", tmp_path, WRONG, first=before)
     assert "my_robot.circle_votes: yours" in said and "at (407, 212), radius 25 px" in said
     said = gone_through("17_camera_calibration", tmp_path, WRONG)
-    assert "✓ the worst of the four, mm beside" in said and "Kept: camera-1" in said
+    assert "✓ the worst of the four, mm off" in said and "Kept: camera-1" in said
     said = gone_through("18_vision_guided_reaching", tmp_path, WRONG)
     assert "Your camera-1" in said and "(the course's" not in said
     assert all(f"my_robot.{name}: yours" in said for name in (*NOTEBOOKS["16"], "pixel_to_plane", "computed_torque"))
-    assert "✓ worst of ten beside the line" in said
+    assert "✓ worst of ten, off the line" in said
     (miss,) = re.findall(r"ball\.miss\.by_camera: ([\d.]+) mm", said)
     assert float(miss) < 25

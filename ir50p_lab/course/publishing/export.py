@@ -1,6 +1,9 @@
 """A notebook as one HTML page without network requests: pictures, formulas and the 3-D arm inside; and as PDF."""
 
+import asyncio
 import html
+import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -18,6 +21,8 @@ from ir50p_lab.course.publishing.pictures import live_arm_script, plain_outputs
 from ir50p_lab.errors import InputError, LabError
 
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge", "microsoft-edge")
+_REACHED = """<script>for (const one of document.querySelectorAll("math, table, .output_html"))
+  if (one.scrollWidth > one.clientWidth) one.tabIndex = 0;</script>"""  # what scrolls does so by keys, too
 _CSS = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
 
 
@@ -60,7 +65,7 @@ def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
     is_text = notebook.suffix == ".md"
     nb = _text_page(notebook) if is_text else nbformat.read(notebook, as_version=4)
     if run and not is_text:
-        _run(nb, notebook)
+        execute(nb, notebook)
     folder.mkdir(parents=True, exist_ok=True)
     written = [folder / f"{notebook.stem}.html"]
     title = title or notebook.stem
@@ -72,7 +77,11 @@ def export(notebook, folder=".", *, run=True, pdf=True, code=True, title=None):
 
 
 def _text_page(path):
-    return nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(path.read_text(encoding="utf-8"))])
+    """A text as a notebook of one cell; its pictures are found where it lies."""
+    text = re.sub(
+        r"(!\[[^]]*]\()(?!\w+:)", f"\\g<1>{path.resolve().parent.as_posix()}/", path.read_text(encoding="utf-8")
+    )
+    return nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(text)])
 
 
 def find_browser():
@@ -80,9 +89,16 @@ def find_browser():
     return next(filter(None, map(shutil.which, _BROWSERS)), None)
 
 
-def _run(nb, notebook):
+def execute(nb, notebook, **variables):
+    """Run the cells in the folder of the file `notebook`, with these environment variables too.
+
+    Raises LabError with the cell that fails.
+    """
+    where = {"metadata": {"path": str(notebook.resolve().parent)}}
+    client = nbclient.NotebookClient(nb, timeout=600, kernel_name="python3", resources=where)
     try:
-        nbclient.execute(nb, cwd=str(notebook.resolve().parent), timeout=600, kernel_name="python3")
+        with asyncio.Runner(loop_factory=asyncio.SelectorEventLoop) as loop:
+            loop.run(client.async_execute(env=os.environ | variables, stderr=subprocess.DEVNULL))  # its own notices
     except CellExecutionError as error:
         raise LabError(f"{notebook} does not run: {error}") from None
 
@@ -100,7 +116,8 @@ def _page(nb, title, *, live, code):
     head = (
         f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(title)}</title>'
     )
-    return f"<!doctype html><html lang=en><head>{head}<style>{style}</style></head><body>{body}{script}</body></html>"
+    page = f"<head>{head}<style>{style}</style></head><body><main>{body}</main>{_REACHED}{script}</body>"
+    return f"<!doctype html><html lang=en>{page}</html>"
 
 
 def _print(browser, page, path):
