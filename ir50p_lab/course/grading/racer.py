@@ -1,5 +1,6 @@
 """Inside the process of one hand-in: `unknown_arm` gets a bench that asks and is answered in lines of JSON."""
 
+import contextlib
 import json
 import os
 import sys
@@ -19,8 +20,13 @@ def _warm():
     """Compile what stands in for functions that are not there, as long as files may be written."""
     for name in ORDER:
         wanted = task(name)
-        if wanted.cases is not None:
-            wanted.reference(*wanted.cases()[0])
+        for case in wanted.cases() if wanted.cases is not None else ():
+            wanted.reference(*case)
+    task("PID").reference(kp=1).step(0.0, np.zeros(3), np.zeros((3, 3)))
+    with contextlib.suppress(ImportError):  # without numba nothing is compiled
+        from numba.core.caching import IndexDataCacheFile
+
+        IndexDataCacheFile.save = lambda *_: None  # from now on what is compiled is not kept: no file may be written
 
 
 def main():
