@@ -75,7 +75,8 @@ def test_what_is_sought_is_found_by_keys_alone(folder, page):
     page.keyboard.press("Tab")
     page.keyboard.type("elbow half angle")
     page.locator(".found a").first.wait_for()
-    assert page.locator(".told").text_content() == f"{page.locator('.found a').count()} sections"
+    told = re.fullmatch(r"(\d+) sections", page.locator(".told").text_content())
+    assert page.locator(".found a").count() == min(int(told[1]), 20)
     page.keyboard.press("Tab")
     page.keyboard.press("Enter")
     page.wait_for_url("**/*.html#*")
