@@ -17,14 +17,14 @@ def report(environment, *, here=False):
     _line("System", f"{platform.platform()} {platform.machine()}")
     _line("Project", root)
     fault, cure = "", f"'{COMMAND} --here' prints the command that installs it"
-    in_force = sorted(UNWANTED & os.environ.keys())
+    in_force = {name: value for name, value in sorted(os.environ.items()) if name in UNWANTED}
     if not here:
         fault = environment.fault()
         cure = f"Run '{COMMAND}' to set up" if fault else f"Run '{COMMAND} setup --rebuild'"
         _line("Environment", f"{environment.folder}: {fault or 'ready'}")
     else:
-        for name in in_force:
-            _line("Variables", f"{name}={os.environ[name]} (in force with --here)")
+        for name, value in in_force.items():
+            _line("Variables", f"{name}={value} (in force with --here)")
     found, faults = None, [f"the environment is {fault}"]
     if not fault:
         found, error = environment.look_inside(here=here)

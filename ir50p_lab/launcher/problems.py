@@ -55,7 +55,8 @@ def in_force(folder):
         for name, value in sorted(os.environ.items())
         if value and re.match(_SETTINGS, name, re.IGNORECASE)
     ]
-    roots = [os.environ.get(name, "") for name in ("APPDATA", "PROGRAMDATA", "XDG_CONFIG_HOME", "XDG_CONFIG_DIRS")]
+    roots = [os.environ.get("APPDATA", ""), os.environ.get("PROGRAMDATA", "")]
+    roots += [os.environ.get("XDG_CONFIG_HOME", ""), os.environ.get("XDG_CONFIG_DIRS", "")]
     roots = [Path(root) for root in os.pathsep.join([*roots, *_ROOTS]).split(os.pathsep) if root]
     roots += [Path.home() / root for root in _HOME_ROOTS]
     files = [Path(folder, "uv.toml")]

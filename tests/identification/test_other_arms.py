@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import IdentificationError
+from ir50p_lab.errors import IdentificationError, SuspiciousAngleWarning
 from ir50p_lab.identification import identify
 from ir50p_lab.modelling import Arm
 from ir50p_lab.modelling.friction import Friction
@@ -109,7 +109,8 @@ def test_a_clipped_drive_is_flagged(good, level):
 
 
 def test_degrees_are_flagged(good):
-    found = identify(spoilt(good, q=np.degrees(good.q)), cutoff_hz=4.0, delay=0.0)
+    with pytest.warns(SuspiciousAngleWarning):
+        found = identify(spoilt(good, q=np.degrees(good.q)), cutoff_hz=4.0, delay=0.0)
     assert any("degrees" in text for text in found.warnings)
 
 

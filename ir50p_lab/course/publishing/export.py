@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import nbclient
@@ -96,9 +97,14 @@ def execute(nb, notebook, **variables):
     """
     where = {"metadata": {"path": str(notebook.resolve().parent)}}
     client = nbclient.NotebookClient(nb, timeout=600, kernel_name="python3", resources=where)
-    try:
+
+    def run():
         with asyncio.Runner(loop_factory=asyncio.SelectorEventLoop) as loop:
             loop.run(client.async_execute(env=os.environ | variables, stderr=subprocess.DEVNULL))  # its own notices
+
+    try:
+        with ThreadPoolExecutor(1) as thread:  # the caller's may have a loop that is running: in a notebook it has
+            thread.submit(run).result()
     except CellExecutionError as error:
         raise LabError(f"{notebook} does not run: {error}") from None
 
