@@ -25,12 +25,12 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "identification": 1486,
     "vision": 2282,
     "course": 9248,  # without the next two
-    "course/publishing": 725,
+    "course/publishing": 729,
     "course/grading": 565,
-    "launcher": 587,
+    "launcher": 588,
     "root": 354,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 20_077, 21_084, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 20_082, 21_085, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
