@@ -62,15 +62,22 @@ def lab(tmp_path_factory):
         yield address.format("live_arm.ipynb")
 
 
+def free_port():
+    """A port below those that the system hands out by itself: the kernels of other tests take these at any time."""
+    while True:
+        port = 10_000 + secrets.randbelow(20_000)
+        with socket.socket() as one:
+            if one.connect_ex(("127.0.0.1", port)) != 0:
+                return port
+
+
 @contextmanager
 def running_lab(home, app="jupyterlab", **variables):
     """A JupyterLab (or `notebook`) on a folder: the address of a notebook, with {} for its name, and the process."""
     settings = home / "settings" / "@jupyterlab" / "notebook-extension"
     settings.mkdir(parents=True, exist_ok=True)
     (settings / "tracker.jupyterlab-settings").write_text(json.dumps({"windowingMode": "none"}))
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     token = secrets.token_hex(16)
     variables |= {
         "JUPYTERLAB_SETTINGS_DIR": str(home / "settings"),
