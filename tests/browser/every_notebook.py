@@ -39,8 +39,10 @@ def opened(browser, tmp_path):
     labs = []
 
     def run(path, app="jupyterlab"):
-        shutil.copy(path, tmp_path)
-        labs.append(running_lab(tmp_path, app=app, IR50P_HOME=str(tmp_path / "mine")))
+        (tmp_path / "notebooks").mkdir()
+        shutil.copy(path, tmp_path / "notebooks")
+        (tmp_path / "data").symlink_to(ROOT / "data")
+        labs.append(running_lab(tmp_path / "notebooks", app=app, IR50P_HOME=str(tmp_path / "mine")))
         address, _ = labs[0].__enter__()
         page.goto(address.format(path.name), wait_until="commit")
         page.wait_for_function(KERNEL_IDLE)
@@ -55,27 +57,29 @@ def opened(browser, tmp_path):
 
 
 def push(page):
-    """Move each slider by keys to an end; returns the names of those under which no pixel changes, and of all."""
-    still, names = [], []
+    """Move each slider by keys; returns the names of those under which no pixel changes, and of all.
+
+    A bench's panel speaks to a run, which a_student_drives.py starts.
+    """
     page.wait_for_timeout(1000)
-    for handle in page.locator(".jp-OutputArea .noUi-handle").all():
-        handle.scroll_into_view_if_needed()
-        name = handle.evaluate("(one) => one.closest('.widget-hslider').textContent.trim()")
-        before = handle.evaluate(PIXELS)
-        names.append(name)
-        for key in ("Home", "End"):
-            handle.focus()
-            page.keyboard.press(key)
-            for _ in range(50):
-                if handle.evaluate(PIXELS) != before:
-                    break
-                page.wait_for_timeout(100)
-            else:
-                continue
-            break
-        else:
-            still.append(name)
-    return still, names
+    handles = page.locator(".jp-OutputArea-output:not(:has-text('CUT THE DRIVE')) .noUi-handle").all()
+    names = [one.evaluate("(one) => one.closest('.widget-hslider').textContent.trim()") for one in handles]
+    return [name for name, one in zip(names, handles, strict=True) if not moves(page, one)], names
+
+
+def moves(page, handle):
+    """Whether a pixel changes when the slider goes one step, and back again, or to an end."""
+    handle.scroll_into_view_if_needed()
+    before = handle.evaluate(PIXELS)
+    for key, back in {"ArrowRight": "ArrowLeft", "ArrowLeft": "ArrowRight", "Home": "Home", "End": "End"}.items():
+        handle.focus()
+        page.keyboard.press(key)
+        for _ in range(30):
+            if handle.evaluate(PIXELS) != before:
+                page.keyboard.press(back)
+                return True
+            page.wait_for_timeout(100)
+    return False
 
 
 def assert_sound(page):
