@@ -19,11 +19,12 @@ SECONDS = 300  # a notebook, on a machine that others use too
 RUN_ALL = """() => { window.done = false;
   jupyterapp.commands.execute('notebook:run-all-cells').then(() => { window.done = true; }); }"""
 OUTPUTS = """() => JSON.stringify(jupyterapp.shell.currentWidget.content.widgets.map((one) => one.model.outputs?.toJSON() ?? []))"""
-#: The picture under a slider: the first one in the nearest box that has one.
+#: What is seen beside a slider: the first picture in the nearest box that has one, and the words there.
 PIXELS = """(handle) => {
   let box = handle, picture = null;
   while (!(picture = box.querySelector('img, canvas'))) box = box.parentElement;
-  return picture.src || picture.toDataURL();
+  const words = [...box.querySelectorAll('.widget-html')].map((one) => one.textContent);
+  return (picture.src || picture.toDataURL()) + words;
 }"""
 #: What callbacks say in red under a panel; a cell may print the name of an error on purpose.
 SAID = """() => [...document.querySelectorAll('.jp-OutputArea [style*="8E1B0E"], .jp-OutputArea [style*="142, 27, 14"]')]
