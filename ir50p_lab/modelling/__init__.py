@@ -19,16 +19,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "inertia": ["Body", "cylinder", "integrate_solid", "second_moment_tensor", "tube"],
         "named_arms": ["IR50P", "IR50P_WEAK_SHOULDER", "THESIS_A", "THESIS_C", "THESIS_RODS", "load_arm"],
         "symbolic": ["derive", "same_function"],
-        "pose": [
-            "CARDANIAN",
-            "EULERIAN",
-            "SEQUENCES",
-            "angles_from_rotation",
-            "gimbal_lock",
-            "rot_x",
-            "rot_y",
-            "rot_z",
-            "rotation_from_angles",
-        ],
+        "pose": ["rot_x", "rot_y", "rot_z"],
     },
 )
