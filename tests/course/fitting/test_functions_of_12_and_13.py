@@ -71,11 +71,7 @@ WRONG = [  # function, its body, what is said
     ("fit_percent", f"return 1 - {MISSED} / np.linalg.norm(measured - measured.mean())", "a share, from 0 to 1"),
     ("fit_percent", f"return 100 * {MISSED} / np.linalg.norm(measured - measured.mean())", "what is missed"),
     ("fit_percent", f"return 100 - {MISSED} / np.linalg.norm(measured - measured.mean())", "turn it into percent"),
-    (
-        "fit_percent",
-        "return 100 * (1 - np.mean(np.abs((measured - predicted) / measured)))",
-        "divided by the value itself",
-    ),
+    ("fit_percent", "return 100 * (1 - np.mean(np.abs((measured - predicted) / measured)))", "by the value itself"),
     (
         "fit_percent",
         f"return 100 * (1 - {MISSED} / np.linalg.norm(predicted - predicted.mean()))",
