@@ -2,7 +2,7 @@
 
 All gains are of the parallel form C(s) = kp + ki/s + kd s. The derivative is meant without filter: one with a time
 constant of Td/10 or less changes little. No rule knows of friction, backlash, saturation or the sampling of the
-controller; a controller held for a period h delays by another h/2, which is to be added to L.
+controller; a controller held for a period h delays by another h/2, which has to be added to L.
 """
 
 import math

@@ -134,7 +134,7 @@ class Body:
     def about(self, point=(0.0, 0.0, 0.0)):
         """Inertia tensor about another point by Steiner's theorem: I + m (d^T d I3 - d d^T), (3, 3) kg m^2.
 
-        point: (3,) m. d is the way from the point to the centre of mass.
+        point: (3,) m. d is the vector from the point to the centre of mass.
         """
         d = self.com - np.asarray(point, dtype=float)
         return self.inertia + self.mass * (d @ d * np.eye(3) - np.outer(d, d))

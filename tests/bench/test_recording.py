@@ -237,7 +237,7 @@ def test_what_a_spreadsheet_with_decimal_commas_saved_again(tmp_path, separator,
 def test_what_a_spreadsheet_spoilt_is_named(tmp_path, was, became):
     text = ours(*(f"{k / 100:.2f},0.500000,{ROW.split(',', 1)[1]}" for k in range(5)))
     spoilt = saved_again(text, ";", "utf-8").decode().replace(was, became, 1)
-    with pytest.raises(RecordingError, match=r"line 4: .* is no number; repair"):
+    with pytest.raises(RecordingError, match=r"line 4: .* is not a number; repair"):
         Recording.load(file_of(tmp_path, spoilt))
 
 
@@ -248,13 +248,13 @@ def test_decimal_commas_beside_commas_stand_in_quotes(tmp_path):
 
 
 def test_a_cell_too_narrow_to_be_shown_is_no_line_of_the_head(tmp_path):
-    with pytest.raises(RecordingError, match="'########' is no number; repair"):
+    with pytest.raises(RecordingError, match="'########' is not a number; repair"):
         Recording.load(file_of(tmp_path, ours(f"0,0.5,{ROW.split(',', 1)[1]}", f"########,{ROW}")))
 
 
 def test_a_point_beside_decimal_commas_is_one_of_thousands(tmp_path):
     spoilt = saved_again(ours(f"0,{ROW}", f"0.01,{ROW}"), ";", "utf-8").decode().replace("0,5;", "1.234;", 1)
-    with pytest.raises(RecordingError, match=r"'1.234' beside decimal commas is no number; repair"):
+    with pytest.raises(RecordingError, match=r"'1.234' beside decimal commas is not a number; repair"):
         Recording.load(file_of(tmp_path, spoilt))
 
 
@@ -307,7 +307,7 @@ def test_arrays_that_cannot_be_are_refused(t, q, u, words):
 
 WRONG = [
     (ours(f"0.00,{ROW}", "0.01,0.5,0.2", f"0.02,{ROW}"), r"line 5: 3 values for 15 columns .*delete that line"),
-    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "6o0"), f"0.02,{ROW}"), r"line 5: '6o0' is no number"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "6o0"), f"0.02,{ROW}"), r"line 5: '6o0' is not a number"),
     (ours(f"0.00,{ROW}", f"0.02,{ROW}", f"0.01,{ROW}"), r"line 6: t = 0.01 s is not later"),
     (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("0.2", "")), r"line 5: t or an angle is missing"),
     (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "inf")), r"line 5: a value is infinite"),

@@ -106,9 +106,9 @@ def test_motions_come_back_as_they_were(tmp_path):
     save_excitations(tmp_path / "some.json", {"x": MOTIONS["training"]}, made_by="here")
     assert load_excitations(tmp_path / "some.json") == {"x": MOTIONS["training"]}
     (tmp_path / "bad.json").write_text("{}")
-    with pytest.raises(InputError, match="no file of excitations"):
+    with pytest.raises(InputError, match="not a file of excitations"):
         load_excitations(tmp_path / "bad.json")
-    with pytest.raises(InputError, match="no file of excitations"):
+    with pytest.raises(InputError, match="not a file of excitations"):
         load_excitations(tmp_path / "none.json")
 
 

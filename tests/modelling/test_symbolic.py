@@ -216,7 +216,7 @@ def test_same_function_tells_apart():
 def test_refusals_say_what_to_do(inline):
     with pytest.raises(InputError, match="choose 'in-line' or 'general' or 'thesis'"):
         derive(links="bent")
-    with pytest.raises(InputError, match="'lc4' is no parameter"):
+    with pytest.raises(InputError, match="'lc4' is not a parameter"):
         inline.values({"lc4": 1})
     with pytest.raises(InputError, match=r"no number for .*m3"):
         inline.values({"g": 9.81, "l1": 1})

@@ -102,7 +102,7 @@ HEIC = struct.pack(">I", 24) + b"ftypheic" + bytes(4) + b"mif1heic" + bytes(500)
 )
 def test_what_is_no_picture(tmp_path, data, capfd):
     (tmp_path / "a.jpg").write_bytes(data)
-    with pytest.raises(ImageError, match=r"is no picture that can be read.*JPEG or PNG.*Most Compatible"):
+    with pytest.raises(ImageError, match=r"cannot be read as a picture.*JPEG or PNG.*Most Compatible"):
         load_image(tmp_path / "a.jpg")
     assert capfd.readouterr() == ("", "")
 
