@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from refusals import refused
 from scipy.signal import freqz_sos
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.signals import LowPass, alias, low_pass, low_pass_lag
 
 RATE = 100.0
@@ -75,8 +75,7 @@ def test_a_constant_passes_from_the_first_sample_on(level, order, cutoff):
 
 
 def test_300_hz_at_100_hz_is_refused_with_the_reason():
-    with pytest.raises(InputError, match=r"300 Hz, but samples at 100 Hz hold nothing above half their rate, 50 Hz"):
-        low_pass(SLOW, 300, 100)
+    refused(r"300 Hz, but samples at 100 Hz hold nothing above half their rate, 50 Hz", low_pass, SLOW, 300, 100)
 
 
 def test_why_noise_above_half_the_rate_cannot_be_filtered_any_more():
@@ -92,15 +91,13 @@ def test_why_noise_above_half_the_rate_cannot_be_filtered_any_more():
     "make", [lambda f: low_pass(SLOW, f, RATE), lambda f: LowPass(f, RATE), lambda f: low_pass_lag(f, RATE)]
 )
 def test_cut_off_at_or_above_half_the_rate(make, excess):
-    with pytest.raises(InputError, match="hold nothing above half their rate, 50 Hz"):
-        make(50 + excess)
+    refused("hold nothing above half their rate, 50 Hz", make, 50 + excess)
     make(49.9)
 
 
 @pytest.mark.parametrize("cutoff", [0, -1e-9, -3, math.nan, None, "5", (3, 4)])
 def test_cut_offs_that_are_none(cutoff):
-    with pytest.raises(InputError, match="cutoff_hz"):
-        low_pass(SLOW, cutoff, RATE)
+    refused("cutoff_hz", low_pass, SLOW, cutoff, RATE)
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
@@ -108,27 +105,18 @@ def test_cut_offs_that_are_none(cutoff):
 def test_numbers_that_are_not_finite(bad, place):
     x = SLOW.copy()
     x[place] = bad
-    with pytest.raises(InputError, match="x holds"):
-        low_pass(x, 3, RATE)
+    refused("x holds", low_pass, x, 3, RATE)
     loop = LowPass(3, RATE)
     loop.step(0.0)
-    with pytest.raises(InputError, match="finite"):
-        loop.step(bad)
+    refused("finite", loop.step, bad)
     assert loop.step(0.0) == 0.0  # the refused sample has left no trace
 
 
 def test_other_bad_input():
-    with pytest.raises(InputError, match="rate_hz"):
-        low_pass(SLOW, 3, 0)
-    with pytest.raises(InputError, match="order"):
-        low_pass(SLOW, 3, RATE, order=0)
-    with pytest.raises(InputError, match="kind"):
-        low_pass(SLOW, 3, RATE, kind="fast")
-    with pytest.raises(InputError, match="shape"):
-        low_pass(np.zeros((2, 2, 2)), 3, RATE)
-    with pytest.raises(InputError, match="numbers"):
-        low_pass("noise", 3, RATE)
-    with pytest.raises(InputError, match="backward"):
-        low_pass(SLOW[:5], 3, RATE, kind="zero-phase")
-    with pytest.raises(InputError, match="half the rate"):
-        low_pass_lag(3, RATE, at_hz=60)
+    refused("rate_hz", low_pass, SLOW, 3, 0)
+    refused("order", low_pass, SLOW, 3, RATE, order=0)
+    refused("kind", low_pass, SLOW, 3, RATE, kind="fast")
+    refused("shape", low_pass, np.zeros((2, 2, 2)), 3, RATE)
+    refused("numbers", low_pass, "noise", 3, RATE)
+    refused("backward", low_pass, SLOW[:5], 3, RATE, kind="zero-phase")
+    refused("half the rate", low_pass_lag, 3, RATE, at_hz=60)
