@@ -7,7 +7,7 @@ import pytest
 from refusals import refused
 
 from ir50p_lab.identification import causal_derivatives, central_derivatives, process
-from ir50p_lab.signals import LowPass, at_rest, fourier
+from ir50p_lab.signals import at_rest, fourier, low_pass
 
 A, B = at_rest(*np.random.default_rng(1).normal(0, 0.1, (2, 3, 5)))
 TARGET = fourier(A, B, period=10.0, q0=(0, 0.6, -1), periods=3)
@@ -26,9 +26,8 @@ def recorded(rate=100.0, seconds=30.0, *, keep=None, jitter=0.0, seed=0):
 def test_causal_is_the_thesis_way_sample_by_sample():
     """Second route: the filter and the differences as a loop has them."""
     q = recorded().q
-    smooth, last, last_v, rows = LowPass(3.0, 100.0), None, np.zeros(3), []
-    for sample in q:
-        x = smooth.step(sample)
+    last, last_v, rows = None, np.zeros(3), []
+    for x in low_pass(q, 3.0, 100.0):
         v = np.zeros(3) if last is None else (x - last) * 100
         rows.append([x, v, (v - last_v) * 100])
         last, last_v = x, v

@@ -1,7 +1,6 @@
 """Arms: what is refused and why, what is flagged, files, named arms, and what theta means."""
 
 from dataclasses import FrozenInstanceError, fields, replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -63,21 +62,6 @@ def test_slender_rods_and_point_masses_are_allowed():
     assert Arm(**GOOD, Iyy=(0, rod, rod), Izz=(0, rod, rod)).suspicions == ()
     assert Arm(**GOOD).theta.shape == (3, 20)
     assert Arm(**{**GOOD, "lc": GOOD["l"]}).suspicions == ()  # all of the mass at the end of a link: a hand
-
-
-def test_full_rigid_bodies_are_taken_or_refused():
-    com = np.array([[0, 0, 0.1], [0.1, 0, 0], [0.1, 0, 0]])
-    inertia = np.array([np.diag([0.01, 0.01, 0.01])] * 3)
-    bodies = partial(Arm.from_rigid_bodies, l=GOOD["l"], m=GOOD["m"])
-    arm = bodies(com=com, inertia=inertia, name="bodies")
-    assert arm == Arm(**GOOD, name="bodies", Ixx=(0.01,) * 3, Iyy=(0.01,) * 3, Izz=(0.01,) * 3)
-    beside = com + np.array([[0, 0, 0], [0, 0.02, 0], [0, 0, 0]])
-    said = r"link 2 is 0.02 m off the link axis.*derive\(general=True\)"
-    refused(said, bodies, com=beside, inertia=inertia, error=ArmError)
-    skewed = inertia.copy()
-    skewed[2, 0, 1] = skewed[2, 1, 0] = 0.002
-    refused(r"link 3 .* products of inertia reach 0\.002", bodies, com=com, inertia=skewed, error=ArmError)
-    refused(r"\(3, 3, 3\)", bodies, com=com, inertia=inertia[0], error=ArmError)
 
 
 def test_an_arm_cannot_be_changed():
