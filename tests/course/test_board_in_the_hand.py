@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ir50p_lab.course.camera.board_in_the_hand import T_HAND_BOARD, board_in_the_hand, turned_figure
+from ir50p_lab.course.camera.board_in_the_hand import T_HAND_BOARD, board_in_the_hand
 from ir50p_lab.modelling import IR50P, frames
 
 
@@ -10,5 +10,3 @@ def test_what_is_seen_is_where_the_hand_holds_it():
     session = board_in_the_hand(4, noise=0.0, seed=1)
     for q, seen in zip(session.poses, session.T_cam_board, strict=True):
         np.testing.assert_allclose(session.T_base_cam @ seen, frames(IR50P, q)[3] @ T_HAND_BOARD, atol=1e-5)
-    figure = turned_figure(frames(IR50P, session.poses)[:, 3], session.T_base_cam, 0.2)
-    assert len(figure.axes[0].lines) == 2 * (4 + 2) + 1  # a ray to each hand, the hands, the camera; the column

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.modelling import IR50P, frames
 from ir50p_lab.vision import board_points, board_pose
 from ir50p_lab.vision.board_pose import inverse_transform, transform
@@ -33,20 +32,3 @@ def board_in_the_hand(poses=15, *, noise=0.1, seed=0):
             found.append(q)
             seen.append(board_pose(camera, corners, points)[0])
     return Session(np.array(found), np.array(seen), inverse_transform(T_cam_base))
-
-
-def turned_figure(hands, T_base_cam, angle):
-    """Hands (n, 4, 4) and camera from above, and all of them turned by `angle` rad about the column."""
-    figure, axes = subplots(6.5, 4.0)
-    places = np.vstack([hands[:, :2, 3], T_base_cam[:2, 3]])
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    looks = (places, COLOURS["blue"], "as they are"), (places @ turn.T, COLOURS["orange"], "turned about the column")
-    for xy, colour, label in looks:
-        for hand in xy[:-1]:
-            axes.plot(*np.transpose([hand, xy[-1]]), color=colour, linewidth=0.4)
-        axes.plot(*xy[:-1].T, "o", color=colour, label=label)
-        axes.plot(*xy[-1], "s", color=colour, markersize=10)  # the camera
-    axes.plot(0, 0, "k+", markersize=14, label="column")
-    axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.2), ncols=3)
-    return figure

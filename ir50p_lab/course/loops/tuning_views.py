@@ -1,6 +1,4 @@
-"""Pictures for tuning: one joint over time, root loci."""
-
-from itertools import pairwise
+"""Pictures for tuning: one joint over time."""
 
 import numpy as np
 
@@ -77,52 +75,3 @@ def speed_step(t, speed, fitted=None):
     ax.set(xlim=(0.9, 1.8), xlabel="time [s]", ylabel="speed [rad/s]")
     ax.legend(fontsize=8, loc="lower right")
     return figure
-
-
-class LocusView:
-    """Root loci of the same loop in continuous time (s plane) and sampled (z plane, with the unit circle).
-
-    Args: gains (n,), increasing; continuous, sampled: poles (n, k) for each gain (rad/s, and 1); zeros: of each of the
-    two loops, where the paths end.
-
-    Attributes: figure. `update(gain)` marks the poles of the nearest gain.
-    """
-
-    def __init__(self, gains, continuous, sampled, *, zeros):
-        self.figure, left, right = subplots(9.6, 4.2, cols=2)
-        self._gains, self._loci = gains, (continuous, sampled)
-        turn = np.linspace(0, 2 * np.pi, 181)
-        right.plot(np.cos(turn), np.sin(turn), **SETPOINT)
-        right.set(xlim=(-1.6, 1.4), ylim=(-1.5, 1.5), aspect="equal", title="Sampled: beyond the circle it grows")
-        right.set(xlabel="Re z [1]", ylabel="Im z [1]")
-        left.axvline(0, **SETPOINT)
-        left.set(title="Continuous: the poles never cross to the right", xlabel="Re s [1/s]", ylabel="Im s [1/s]")
-        self._marks = []
-        for ax, loci, ends in zip((left, right), self._loci, zeros, strict=True):
-            path = _joined(loci)
-            labels = ["path of the poles", *[None] * (path.shape[1] - 1)]
-            ax.plot(path.real, path.imag, color=COLOURS["grey"], linewidth=1, label=labels)
-            ax.plot(loci[0].real, loci[0].imag, "x", color=COLOURS["dark"], label="poles at the least gain")
-            ax.plot(np.real(ends), np.imag(ends), "o", color=COLOURS["dark"], mfc="none", label="zeros")
-            self._marks += ax.plot([], [], "o", color=COLOURS["orange"], ms=7, label="poles at this gain")
-        left.legend(fontsize=8, loc="upper left")
-        size = 1.1 * np.percentile(np.abs(self._loci[0]), 90)
-        left.set(xlim=(-size, 0.25 * size), ylim=(-0.625 * size, 0.625 * size))
-
-    def update(self, gain):
-        """Mark the closed-loop poles of the gain nearest to `gain`."""
-        k = int(np.argmin(np.abs(self._gains - gain)))
-        for mark, loci in zip(self._marks, self._loci, strict=True):
-            mark.set_data(loci[k].real, loci[k].imag)
-
-
-def _joined(loci):
-    """Loci (n, k) with the places where two branches meet between two gains: without them the paths have corners."""
-    rows = [loci[0]]
-    for here, there in pairwise(loci):
-        met = (here.imag == 0) != (there.imag == 0)
-        if met.sum() == 2:
-            place = (here[met].real.mean() + there[met].real.mean()) / 2
-            rows.append(np.where(met, place, (here + there) / 2))
-        rows.append(there)
-    return np.array(rows)

@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, subplots
-from ir50p_lab.course.draw.traces import STAMP, Row, Traces
+from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, SETPOINT, subplots
+from ir50p_lab.course.draw.traces import STAMP
 
 
 def motion(t, x, last=None):
@@ -41,14 +41,19 @@ def orders(steps, errors):
 
 def bill_panel():
     """A panel of what a way asks of three motors: its figure, and update(seconds, shares (n, 3) of each one's most)."""
-    row = Row("share of most [1]", (-1.5, 1.5), JOINT_LABELS, levels=(-1, 1))
-    traces = Traces("time [s]", (0, 4), row)
+    figure, ax = subplots(9.0, 3.4)
+    lines = [ax.plot([], [], label=label)[0] for label in JOINT_LABELS]
+    for level in (-1, 1):
+        ax.axhline(level, **SETPOINT)
+    ax.set(xlim=(0, 4), ylim=(-1.5, 1.5), xlabel=f"time [s]  -  {STAMP}", ylabel="share of most [1]", title=" ")
+    ax.legend(loc="upper right", ncols=3, fontsize=9)
 
     def update(seconds, shares):
-        traces.update(np.linspace(0, seconds, len(shares)), *shares.T)
-        traces.title(f"In {seconds:.2f} s: up to {100 * np.max(np.abs(shares)):.0f} % of what a motor can")
+        for line, share in zip(lines, shares.T, strict=True):
+            line.set_data(np.linspace(0, seconds, len(share)), share)
+        ax.set_title(f"In {seconds:.2f} s: up to {100 * np.max(np.abs(shares)):.0f} % of what a motor can")
 
-    return traces.figure, update
+    return figure, update
 
 
 def honey(M):

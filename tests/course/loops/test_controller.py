@@ -60,7 +60,7 @@ FORGET = "self.integral = np.zeros(3)\n"
           "+ (0 if self.last is None else self.kd * (qd_wanted - self.speed))"),
           ("        self.last = q\n", ""), ("        return", "        self.last = q\n        return")], ""),
         ("PID", [("1 - np.exp(-2 * np.pi * filter_hz * period)",
-          "period / (period + 1 / (2 * np.pi * filter_hz))")], "another share"),
+          "period / (period + 1 / (2 * np.pi * filter_hz))")], "differs from the course"),
     ],
 )  # fmt: skip
 def test_other_right_ones_pass(stage, edits, remark):

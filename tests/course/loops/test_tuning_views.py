@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ir50p_lab.controllers import PID
-from ir50p_lab.course.loops.tuning_views import LocusView, one_joint
+from ir50p_lab.course.loops.tuning_views import one_joint
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate
 
@@ -16,20 +16,6 @@ TARGET = np.array([0.8, 0.5, -0.7])
 @pytest.fixture(scope="module")
 def run():
     return simulate(IR50P, PID((289, 225, 270), kd=(40, 30, 30), limit_pwm=255), TARGET, duration=2)
-
-
-def test_paths_that_meet_have_no_corner_and_zeros_are_marked():
-    gains = np.linspace(1, 4, 8)
-    poles = np.array([np.roots([1, 2, gain / 2]) for gain in gains])  # they meet at -1, at a gain of 2
-    left = LocusView(gains, poles, np.exp(0.1 * poles), zeros=([-3.0], [])).figure.axes[0]
-    paths = [line for line in left.lines if len(line.get_xdata()) > len(gains)]
-    assert len(paths) == 2
-    for path in paths:
-        places = path.get_xdata() + 1j * path.get_ydata()
-        assert np.abs(places + 1).min() < 1e-9
-    (zeros,) = [line for line in left.lines if line.get_label() == "zeros"]
-    np.testing.assert_array_equal(zeros.get_xdata(), [-3.0])
-    assert {"path of the poles", "zeros"} <= {text.get_text() for text in left.get_legend().get_texts()}
 
 
 def test_one_joint_shows_each_run_and_the_target_of_the_first(run):
