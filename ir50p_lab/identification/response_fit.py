@@ -240,7 +240,7 @@ def _check_shape(record, rate, L, slope, e):
     if rate * (1 - L) < 1 / _SLOWEST:
         value = f"only K/T has a value, {slope * record.y_range / record.u_range / record.seconds:.4g} y/u per s"
         said = "the response runs on like a ramp, or faster: the plant integrates (as angles do), is unstable or slow"
-        warned.refuse(f"{said}; {value}: fit the velocity and tune with simc_integrating, or record longer")
+        warned.refuse(f"{said}; {value}: fit the velocity and tune by the rule of notebook 09, or record longer")
 
 
 def _check_parameters(record, T, L, errors, e):

@@ -89,38 +89,11 @@ THESIS_RODS = dataclasses.replace(
 )
 
 
-def thesis_theta(*, m, l, lc, Izz=(0, 0, 0), Iyy=(0, 0, 0), Iyz=(0, 0, 0), j=(0, 0, 0)):
-    """The 20 parameters of the thesis's model with its algebra put right, (3, 20), N m.
-
-    The thesis takes inertias that stay constant in a frame that turns with joint 1 only, and keeps m1 lc1^2.
-    With products of inertia Iyz that is not a rigid body, so it exists as theta only, to reproduce its figures.
-
-    Args: m kg, l m, lc m, Izz, Iyy, Iyz, j kg m^2, each (3,).
-    """
-    inertial = [
-        j[0] + m[0] * lc[0] ** 2 + sum(Izz),
-        m[1] * lc[1] ** 2 + m[2] * l[1] ** 2,
-        m[1] * lc[1] + m[2] * l[1],
-        m[2] * lc[2],
-        m[2] * lc[2] ** 2,
-        m[2] * lc[2] * l[1],
-        Iyz[1],
-        Iyz[2],
-        Iyy[1] + j[1],
-        Iyy[2],
-    ]
-    return read_only(np.tile(np.array([*inertial, *[0.0] * 9, j[2]], dtype=float), (3, 1)))
-
-
 # Thesis 2.1.2: l = 0.2 m with lc = 0.5 m (2.5 link lengths out: a misprint it seems), Izz = Iyy = Iyz2 = 0.05.
-THESIS_C = thesis_theta(
-    m=(3, 1, 1),
-    l=(0.2, 0.2, 0.2),
-    lc=(0.5, 0.5, 0.5),
-    Izz=(0.05, 0.05, 0.05),
-    Iyy=(0, 0.05, 0.05),
-    Iyz=(0, 0.05, 0),
-)
+# The thesis takes inertias that stay constant in a frame that turns with joint 1 only. With the product Iyz that is no
+# rigid body, so it exists as theta only, to reproduce its figures: m1 lc1^2 + sum Izz, m2 lc2^2 + m3 l2^2, ...
+_INERTIAL = (0.90, 0.29, 0.70, 0.50, 0.25, 0.10, 0.05, 0.0, 0.05, 0.05)
+THESIS_C = read_only(np.tile([*_INERTIAL, *[0.0] * 10], (3, 1)))
 
 
 def load_arm(path=None):

@@ -11,7 +11,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "fourier": ["Fourier", "at_rest", "fourier"],
-        "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag"],
+        "low_pass": ["alias", "low_pass"],
         "quintic": ["quintic", "through"],
         "reference": ["Reference"],
         "sinusoid": ["sinusoid"],
