@@ -77,7 +77,7 @@ class LiveArm(anywidget.AnyWidget):
         self._stop = threading.Event()
         ball = None if ball is None else (vectors3("ball", ball[0], unit="m").reshape(-1, 3), float(ball[1]))
         options = {
-            "lengths": lengths(arm),  # refuses what is no Arm
+            "lengths": lengths(arm),  # refuses what is not an Arm
             "limits": np.clip([arm.q_min, arm.q_max], -np.pi, np.pi).T,
             "badge": badge or badge_of(on_drag or frames),
             "drag": "browser" if on_drag is None else "kernel",
