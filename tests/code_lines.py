@@ -17,20 +17,20 @@ NOT_OURS = {"node_modules", "__pycache__"}
 ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {  # what there is; the design asks for less in bench, course, launcher, root and tests
-    "modelling": 1249,
-    "signals": 380,
-    "controllers": 318,
+    "modelling": 1133,
+    "signals": 354,
+    "controllers": 284,
     "simulation": 456,
     "bench": 2383,
     "identification": 1486,
-    "vision": 2282,
-    "course": 9119,  # without the next two
+    "vision": 2279,
+    "course": 9155,  # without the next two
     "course/publishing": 729,
     "course/grading": 565,
     "launcher": 588,
     "root": 354,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_909, 20_952, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_766, 20_071, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -13,6 +13,5 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "computed_torque": ["ComputedTorque"],
         "continuous_pid": ["ContinuousPID"],
         "pid": ["PID"],
-        "tuning": ["PIDGains", "amigo", "simc", "simc_integrating", "ziegler_nichols"],
     },
 )

@@ -1,4 +1,4 @@
-"""The arms of the course: the real one (with its assumptions) and the thesis' models."""
+"""The arms of the course: the real one (with its assumptions) and the thesis's models."""
 
 import dataclasses
 
@@ -39,7 +39,7 @@ def _drive(stall_torque, no_load_speed):
 
 
 # The thesis gives neither masses nor motors of the IR50P. What is not sourced is an assumption, chosen so that
-# identification lands near the thesis' Table 4.4; nothing here was measured on an IR50P.
+# identification lands near the thesis's Table 4.4; nothing here was measured on an IR50P.
 IR50P = Arm(
     name="IR50P",
     # Source: published code of a sister arm (IR52c): shoulder height 285, links 200 and 200 mm, hand 172 mm.
@@ -54,7 +54,7 @@ IR50P = Arm(
     Izz=(0.02, 0.0035, 0.0085),
     # Assumed: stall torque and no-load speed.
     **_drive(stall_torque=(4.0, 7.0, 6.0), no_load_speed=(2.5, 1.1, 1.3)),
-    # Assumed: the ROB3i manual gives 200 deg of travel, not where. Chosen so that the thesis' set points fit.
+    # Assumed: the ROB3i manual gives 200 deg of travel, not where. Chosen so that the thesis's set points fit.
     q_min=(-100 * _DEG, -50 * _DEG, -140 * _DEG),
     q_max=(100 * _DEG, 110 * _DEG, 30 * _DEG),
 )
@@ -89,38 +89,11 @@ THESIS_RODS = dataclasses.replace(
 )
 
 
-def thesis_theta(*, m, l, lc, Izz=(0, 0, 0), Iyy=(0, 0, 0), Iyz=(0, 0, 0), j=(0, 0, 0)):
-    """The 20 parameters of the thesis' model with its algebra put right, (3, 20), N m.
-
-    The thesis takes inertias that stay constant in a frame that turns with joint 1 only, and keeps m1 lc1^2.
-    With products of inertia Iyz that is no rigid body, so it exists as theta only, to reproduce its figures.
-
-    Args: m kg, l m, lc m, Izz, Iyy, Iyz, j kg m^2, each (3,).
-    """
-    inertial = [
-        j[0] + m[0] * lc[0] ** 2 + sum(Izz),
-        m[1] * lc[1] ** 2 + m[2] * l[1] ** 2,
-        m[1] * lc[1] + m[2] * l[1],
-        m[2] * lc[2],
-        m[2] * lc[2] ** 2,
-        m[2] * lc[2] * l[1],
-        Iyz[1],
-        Iyz[2],
-        Iyy[1] + j[1],
-        Iyy[2],
-    ]
-    return read_only(np.tile(np.array([*inertial, *[0.0] * 9, j[2]], dtype=float), (3, 1)))
-
-
 # Thesis 2.1.2: l = 0.2 m with lc = 0.5 m (2.5 link lengths out: a misprint it seems), Izz = Iyy = Iyz2 = 0.05.
-THESIS_C = thesis_theta(
-    m=(3, 1, 1),
-    l=(0.2, 0.2, 0.2),
-    lc=(0.5, 0.5, 0.5),
-    Izz=(0.05, 0.05, 0.05),
-    Iyy=(0, 0.05, 0.05),
-    Iyz=(0, 0.05, 0),
-)
+# The thesis takes inertias that stay constant in a frame that turns with joint 1 only. With the product Iyz that is no
+# rigid body, so it exists as theta only, to reproduce its figures: m1 lc1^2 + sum Izz, m2 lc2^2 + m3 l2^2, ...
+_INERTIAL = (0.90, 0.29, 0.70, 0.50, 0.25, 0.10, 0.05, 0.0, 0.05, 0.05)
+THESIS_C = read_only(np.tile([*_INERTIAL, *[0.0] * 10], (3, 1)))
 
 
 def load_arm(path=None):

@@ -1,6 +1,6 @@
 """Reference signals, and filters for measured ones.
 
-A reference says where the joints shall be, how fast they move there, and with what acceleration.
+A reference says where the joints have to be, how fast they move there, and with what acceleration.
 Every reference `target` is frozen and answers `target(t)` -> (q, qd, qdd) and `target.sample(t)` -> (n, 3, 3).
 Names are loaded on first use: importing this package costs nothing.
 """
@@ -11,7 +11,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "fourier": ["Fourier", "at_rest", "fourier"],
-        "low_pass": ["LowPass", "alias", "low_pass", "low_pass_lag"],
+        "low_pass": ["alias", "low_pass"],
         "quintic": ["quintic", "through"],
         "reference": ["Reference"],
         "sinusoid": ["sinusoid"],

@@ -1,4 +1,4 @@
-"""Low-pass filters for sampled signals: for a record at once, and sample by sample in a loop (4.1.3 corrected)."""
+"""Low-pass filters for sampled signals: for a record at once (4.1.3 corrected)."""
 
 import math
 
@@ -11,12 +11,12 @@ from ir50p_lab.inputs import choice, first_not_finite, number, numbers, whole
 def low_pass(x, cutoff_hz, rate_hz, *, order=1, kind="causal"):
     """Butterworth low pass of a record; gain 1/sqrt(2) at the cut-off (Figure 4.3; zero-phase: 1/2).
 
-    kind="causal" uses the past only, as a loop must: it starts settled on the first sample and comes late by `lag`.
+    kind="causal" uses the past only, as a loop must: it starts settled on the first sample; its lag is 1/(2 pi cutoff).
     kind="zero-phase" runs forward and backward over the finished record: no lag, double the order, not for a loop.
 
     Args: x: (n,) or (n, k), time first; cutoff_hz: Hz, below rate_hz/2; rate_hz: samples per s; order: 1..8.
-    Returns: array like x. Raises InputError for a cut-off at or above half the rate (the thesis' 300 Hz at 100 Hz), for
-    numbers that are not finite, and for records too short to be run backward.
+    Returns: array like x. Raises InputError for a cut-off at or above half the rate (the thesis's 300 Hz at 100 Hz),
+    for numbers that are not finite, and for records too short to be run backward.
 
     >>> from ir50p_lab.signals import low_pass
     >>> low_pass([0, 1, 1, 1], cutoff_hz=3, rate_hz=100).round(3)
@@ -32,50 +32,6 @@ def low_pass(x, cutoff_hz, rate_hz, *, order=1, kind="causal"):
     if len(x) <= pad:
         raise InputError(f"x has {len(x)} samples; to run backward it needs more than {pad}")
     return sosfiltfilt(sections, x, axis=0, padlen=pad)
-
-
-class LowPass:
-    """The causal filter of `low_pass`, sample by sample: the same numbers, for loops.
-
-        smooth = LowPass(3.0, 100.0)
-        for sample in bench.run(seconds=5):
-            q = smooth.step(sample.q)
-
-    Args as in `low_pass`. The first sample sets the size and counts as having been there for ever.
-    """
-
-    def __init__(self, cutoff_hz, rate_hz, *, order=1):
-        self.sections = _sections(cutoff_hz, rate_hz, order)
-        self.reset()
-
-    def reset(self):
-        """Forget the past."""
-        self._state = None
-
-    def step(self, x):
-        """The filtered sample; x: a number or (k,), always of the same shape. Raises InputError if not finite."""
-        from scipy.signal import sosfilt
-
-        x = np.asarray(x, dtype=float)
-        if not np.isfinite(x).all():
-            raise InputError(f"x = {x.tolist()}: every sample must be finite; leave it out or repair it")
-        state = _settled(self.sections, x) if self._state is None else self._state
-        y, self._state = sosfilt(self.sections, x[None], axis=0, zi=state)
-        return y[0]
-
-
-def low_pass_lag(cutoff_hz, rate_hz, *, order=1, at_hz=0.0):
-    """How late the causal filter is for slow motion (or at the frequency `at_hz`): its group delay, s.
-
-    Order 1: about 1/(2 pi cutoff) = 53 ms at 3 Hz. Args as in `low_pass`; at_hz: number or (m,), below rate_hz/2.
-    """
-    sections, f = _sections(cutoff_hz, rate_hz, order), _frequencies(at_hz, rate_hz)
-    powers = np.exp(-2j * np.pi / rate_hz * np.outer(np.arange(3), f))  # of one sample of delay, z
-    delayed = np.arange(3)[:, None] * powers
-    above, below = sections[:, :3], sections[:, 3:]
-    # - d phase/d w of sum c_k z^k is Re(sum k c_k z^k / sum c_k z^k)
-    samples = np.real(above @ delayed / (above @ powers) - below @ delayed / (below @ powers)).sum(axis=0)
-    return float(samples[0] / rate_hz) if np.ndim(at_hz) == 0 else samples / rate_hz
 
 
 def alias(f_hz, rate_hz):
@@ -105,13 +61,6 @@ def _settled(sections, x):
     from scipy.signal import sosfilt_zi
 
     return np.multiply.outer(sosfilt_zi(sections), x)
-
-
-def _frequencies(f, rate_hz):
-    f = np.atleast_1d(f).astype(float)
-    if not ((f >= 0) & (f < rate_hz / 2)).all():
-        raise InputError(f"frequency {f.tolist()} Hz: give 0 to below half the rate, {rate_hz / 2:g} Hz")
-    return f
 
 
 def _signal(x):

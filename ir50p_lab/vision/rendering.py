@@ -94,11 +94,6 @@ class BallTruth(namedtuple("BallTruth", "x y radius outline_x outline_y position
 class SceneTruth(namedtuple("SceneTruth", "balls pinhole")):
     """The truth of one rendered picture: its balls, in the order of the scene, and the camera."""
 
-    @property
-    def red_balls(self):
-        """The red balls, largest first."""
-        return tuple(sorted((ball for ball in self.balls if ball.colour == "red"), key=lambda ball: -ball.radius))
-
 
 def look_at(position, target):
     """T_cam_world (4, 4) of a camera at `position` (3,) m that looks at `target` (3,) m, not straight down."""

@@ -21,7 +21,7 @@ WRONG = {
     "fit_line": [
         ("slope, offset = np", "offset, slope = np", "changed places"),
         ("(len(x) - 2)", "len(x)", "you divide the squares by n"),
-        ("offset, covariance", "offset, np.diag(covariance)", "a matrix is asked for"),
+        ("offset, covariance", "offset, np.diag(covariance)", "a matrix is wanted"),
     ],
     "low_pass": [("2 * np.pi * ", "", "2 pi is missing"), ("y[0] = x[0]", "", "begins at 0")],
 }

@@ -56,16 +56,6 @@ def test_uv_keeps_to_a_constraint_of_pip(project, version, code):
     assert "-m', 'uv'" in project.log()
 
 
-def test_changed_lock_file_rebuilds(project):
-    assert project.run("setup").returncode == 0
-    lock = project.root / "environment.txt"
-    lock.write_text(lock.read_text().replace("pebble==1.0", "pebble-test==1.0"))
-    done = project.run("setup")
-    assert "out of date (environment.txt has changed): building it again" in done.stdout
-    assert project.python("import pebble_test").returncode == 0
-    assert project.python("import pebble").returncode == 1  # nothing of the old lock stays behind
-
-
 def test_rebuild_starts_from_nothing(tested):
     (tested.venv / "debris.txt").write_text("")
     done = tested.run("setup", "--rebuild", "--tests")

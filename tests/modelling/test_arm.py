@@ -5,6 +5,7 @@ from dataclasses import FrozenInstanceError, fields, replace
 import numpy as np
 import pytest
 from arms import random_arm
+from refusals import refused
 
 from ir50p_lab.errors import ArmError, LabError, SuspiciousArmWarning
 from ir50p_lab.modelling import (
@@ -38,10 +39,7 @@ GOOD = {"l": (0.3, 0.2, 0.3), "m": (3, 1, 1), "lc": (0.1, 0.1, 0.1)}
     ],
 )
 def test_impossible_arms_are_refused_with_the_reason(change, words):
-    with pytest.raises(LabError) as caught:
-        Arm(**{**GOOD, **change})
-    for word in words:
-        assert word in str(caught.value)
+    refused(words, Arm, **{**GOOD, **change}, error=LabError)
 
 
 @pytest.mark.parametrize(
@@ -64,22 +62,6 @@ def test_slender_rods_and_point_masses_are_allowed():
     assert Arm(**GOOD, Iyy=(0, rod, rod), Izz=(0, rod, rod)).suspicions == ()
     assert Arm(**GOOD).theta.shape == (3, 20)
     assert Arm(**{**GOOD, "lc": GOOD["l"]}).suspicions == ()  # all of the mass at the end of a link: a hand
-
-
-def test_full_rigid_bodies_are_taken_or_refused():
-    com = np.array([[0, 0, 0.1], [0.1, 0, 0], [0.1, 0, 0]])
-    inertia = np.array([np.diag([0.01, 0.01, 0.01])] * 3)
-    arm = Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=inertia, name="bodies")
-    assert arm == Arm(**GOOD, name="bodies", Ixx=(0.01,) * 3, Iyy=(0.01,) * 3, Izz=(0.01,) * 3)
-    beside = com + np.array([[0, 0, 0], [0, 0.02, 0], [0, 0, 0]])
-    with pytest.raises(ArmError, match=r"link 2 is 0.02 m off the link axis.*derive\(general=True\)"):
-        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=beside, inertia=inertia)
-    skewed = inertia.copy()
-    skewed[2, 0, 1] = skewed[2, 1, 0] = 0.002
-    with pytest.raises(ArmError, match=r"link 3 .* products of inertia reach 0\.002"):
-        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=skewed)
-    with pytest.raises(ArmError, match=r"\(3, 3, 3\)"):
-        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=inertia[0])
 
 
 def test_an_arm_cannot_be_changed():
@@ -128,10 +110,7 @@ def test_file_round_trip_is_exact(arm, tmp_path):
 def test_broken_files_are_named(text, words, tmp_path):
     path = tmp_path / "broken.toml"
     path.write_text(text)
-    with pytest.raises(ArmError) as caught:
-        Arm.load(path)
-    for word in [str(path), *words]:
-        assert word in str(caught.value)
+    refused([str(path), *words], Arm.load, path, error=ArmError)
 
 
 @pytest.mark.parametrize("encoding, letter", [("latin-1", "é"), ("utf-16", "é"), ("utf-16-le", "e")])
@@ -139,13 +118,11 @@ def test_a_file_in_another_encoding_is_told_which_to_use(encoding, letter, tmp_p
     path = tmp_path / "arm.toml"
     IR50P.save(path)
     path.write_bytes(path.read_text("utf-8").replace("name = ", f"name = '{letter}'  # ").encode(encoding))
-    with pytest.raises(ArmError, match=r"arm\.toml is not in UTF-8: .* save it with the encoding UTF-8"):
-        Arm.load(path)
+    refused(r"arm\.toml is not in UTF-8: .* save it with the encoding UTF-8", Arm.load, path, error=ArmError)
 
 
 def test_missing_file_is_named(tmp_path):
-    with pytest.raises(ArmError, match=r"nowhere\.toml.*IR50P_ARM"):
-        Arm.load(tmp_path / "nowhere.toml")
+    refused(r"nowhere\.toml.*IR50P_ARM", Arm.load, tmp_path / "nowhere.toml", error=ArmError)
 
 
 def test_course_arm_comes_from_the_environment(tmp_path, monkeypatch):
@@ -184,8 +161,7 @@ def test_friction_of_an_arm_and_its_offset():
     ],
 )
 def test_impossible_friction_is_refused(change, words):
-    with pytest.raises(LabError, match=words):
-        Friction(**change)
+    refused(words, Friction, **change, error=LabError)
 
 
 # --- motors -----------------------------------------------------------------------------------------------
@@ -213,8 +189,7 @@ def test_voltage_follows_from_the_motor_equations():
 def test_impossible_motors_are_refused(field):
     value = getattr(IR50P.actuators, field)
     bad = -value if np.ndim(value) == 0 else (value[0], -value[1], value[2])
-    with pytest.raises(ArmError, match=field):
-        replace(IR50P.actuators, **{field: bad})
+    refused(field, replace, IR50P.actuators, **{field: bad}, error=ArmError)
 
 
 def test_a_file_saved_by_an_editor_of_windows_is_read(tmp_path):

@@ -25,7 +25,7 @@ WRONG = {
     "pixel_to_plane": [
         ("height - camera[2]", "camera[2] - height", "it goes the other way along the line"),
         ("pixel[0], pixel[1]", "pixel[1], pixel[0]", "a pixel is (column, row)"),
-        ("(height - ", "(height / 1000 - ", "at another height than the one asked for"),
+        ("(height - ", "(height / 1000 - ", "but at the wrong height"),
     ],
     "find_and_reach": [
         ("best = 0.5", "best = 0", "a red bar is taken for a ball"),

@@ -8,7 +8,7 @@ _NO_CIRCLE_YET = re.compile(r"^    \.\.\..*\n    return \.\.\.\n", re.M)
 #: What in it, by what, words of what its cell says then.
 WRONG = [
     ("v = radius * rate", "v = rate", "a metre for each radian"),
-    ("v = radius * rate", "v = radius", "quintic told you"),
+    ("v = radius * rate", "v = radius", "quintic returns that, too"),
     ("frames(q", "frames(first", "belongs to another pose"),
 ]
 

@@ -8,16 +8,13 @@ MARKS = {
     "timing": (
         "benchmarks/test_bench_speed.py",
         "bench/test_background.py",
-        "bench/test_background_board.py",
         "bench/test_real_time.py",
         "bench/test_stopped_process.py",
         "course/at_the_bench/test_bench_panel.py",
         "vision/test_vision_times.py",
     ),
     "emulator": (
-        "bench/test_background_board.py",
         "bench/test_firmware.py",
-        "bench/test_firmware_faults.py",
         "bench/test_firmware_noise.py",
         "bench/test_real_time.py",
         "bench/test_stopped_process.py",

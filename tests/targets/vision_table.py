@@ -31,7 +31,7 @@ def over_the_table(n, seed=2):
     return np.array([found(place, k) - place for k, place in enumerate(places)])
 
 
-def rows(*, quick=False):
+def rows(quick):
     """The table of targets."""
     n = 25 if quick else 300
     error = np.linalg.norm(over_the_table(n), axis=1)

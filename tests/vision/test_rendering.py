@@ -78,7 +78,7 @@ def test_the_nearer_ball_hides_the_farther():
     near = SceneBall(position=tuple(0.7 * np.array(far.position) + 0.3 * camera))
     for objects in ((far, near), (near, far)):
         image, truth = render_scene(bench_scene(*objects))
-        (red,) = truth.red_balls
+        red = truth.balls[0]
         assert np.argmax(image[round(red.y), round(red.x)]) == 0
         blue = next(ball for ball in truth.balls if ball.colour == "blue")
         assert np.argmax(image[round(blue.y), round(blue.x)]) == 0

@@ -1,12 +1,13 @@
 """Numbers of notebooks 10 and 11: the lag of a filter, what stiction leaves."""
 
+import math
+
 from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P
-from ir50p_lab.signals import low_pass_lag
 
 # bench-4: a first-order low pass in a loop at 100 Hz, a joint in steady motion.
 _CUTOFF, _SPEED = 2.0, 0.5  # Hz, rad/s
-_LAG = low_pass_lag(_CUTOFF, 100.0)  # s
+_LAG = 1 / (200 * math.tan(0.01 * math.pi * _CUTOFF))  # s, bilinear at 100 Hz
 
 # bench-5: what stiction can leave without an integral.
 _KP = 289.0  # PWM counts per rad, Table 4.1

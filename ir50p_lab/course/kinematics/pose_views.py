@@ -2,11 +2,12 @@
 
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from scipy.linalg import block_diag
 from scipy.spatial.transform import Rotation
 
 from ir50p_lab.course.draw.arm3d import FrameView
 from ir50p_lab.course.draw.style import COLOURS, new_figure
-from ir50p_lab.modelling.pose import homogeneous, rot_x, rot_y
+from ir50p_lab.modelling.pose import rot_x, rot_y
 
 _SIDES = ("#BFD9EA", "#E8C5AE", "#B3DCCD")  # the two faces across x, y, z
 
@@ -51,7 +52,7 @@ def two_bricks(angle):
     for ax, R, title in zip(figure.axes, (np.eye(3), first, second, first), titles, strict=True):
         space(ax)
         Brick(ax, edges=(0.9, 0.55, 0.2)).update(R)
-        FrameView(ax, homogeneous(R), length=0.55)
+        FrameView(ax, block_diag(R, 1), length=0.55)
         ax.set_title(title)
     turn = Rotation.from_matrix(second @ first.T).as_rotvec()
     axis = 1.1 * turn / np.linalg.norm(turn)

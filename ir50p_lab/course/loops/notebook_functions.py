@@ -2,15 +2,13 @@
 
 import numpy as np
 
-from ir50p_lab.controllers import simc_integrating
 from ir50p_lab.course.checking.task import notebook_tasks
-from ir50p_lab.identification import FOPDT
 
 
 def rule(K, T, L, tau_c):
     """Kp, Ki and Kd for a joint whose speed answers a push with K, T and L (SIMC)."""
-    gains = simc_integrating(FOPDT(K=K, T=T, L=L), tau_c=tau_c)
-    return gains.kp, gains.ki, gains.kd
+    gain, Ti = 1 / (K * (tau_c + L)), 4 * (tau_c + L)
+    return gain * (1 + T / Ti), gain / Ti, gain * T
 
 
 def _joints():

@@ -168,4 +168,4 @@ def test_a_damaged_lab_book_stops_no_check(capsys):
     lab_book.path().write_text("{")
     give("rot_z", "def rot_z(angle):\n    return np.eye(3)")
     out = said(capsys)
-    assert "not yet: angle does nothing in it" in out and "rename it" in out
+    assert "not yet: angle does nothing" in out and "rename it" in out

@@ -13,7 +13,7 @@ from ir50p_lab.course.robot.catalogue import IN_NOTEBOOK
 from ir50p_lab.modelling import IR50P, forward_dynamics, mass_matrix
 
 WRONG = [
-    ("pace", "    return fastest * np.sum(np.abs(direction @ tip(q, l)))", "another way"),
+    ("pace", "    return fastest * np.sum(np.abs(direction @ tip(q, l)))", "in another direction"),
     ("push", "    return strongest / np.sum(np.abs(tip(q, l).T @ direction))", "a limit of its own"),
     ("push", "    return strongest / np.max(np.abs(tip(q, l).T @ direction) + 1e-30)", ""),
     ("along", "    return [q_start for p in places]", ""),
@@ -23,7 +23,7 @@ WRONG = [
     ("heaviness", "    return 1 / np.linalg.norm(J @ np.linalg.solve(M, J.T @ direction))", "whole acceleration"),
     ("heaviness", "    return 1 / (direction @ J @ np.linalg.solve(M, J @ direction))", "transpose"),
     ("heaviness", "    return direction @ J @ np.linalg.solve(M, J.T @ direction)", ""),
-    ("shoulder_holds", "    return weight(q)[1] + load * tip(q, l)[2, 1]", "no newtons"),
+    ("shoulder_holds", "    return weight(q)[1] + load * tip(q, l)[2, 1]", "not newtons"),
     ("shoulder_holds", "    return weight(q) + load * 9.81 * tip(q, l)[2]", ""),
     ("lump_torque", "    return tip(q, l).T @ np.array([0, 0, 1.0])", ""),
     ("torque", "    return mass(q) * qdd", ""),

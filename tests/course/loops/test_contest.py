@@ -1,5 +1,6 @@
 """The contest can be lost and won: on 20 copies of the arm, with unseen payloads and targets, by tuning only."""
 
+import control
 import numpy as np
 import pytest
 import solutions
@@ -7,6 +8,7 @@ import solutions
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import lab_book
 from ir50p_lab.course.loops import contest_rules as jury
+from ir50p_lab.course.loops.notebook_functions import rule
 from ir50p_lab.modelling import IR50P, forward_kinematics, load_arm
 
 UNITS = range(7000, 7020)  # seeds nobody tuned on
@@ -136,3 +138,12 @@ def test_compiled_and_python_give_one_score():
     mine, twin = solutions.load().PID(**TUNED), pid(**TUNED)
     a, b = jury.score(mine, [1], IR50P), jury.score(twin, [1], IR50P)
     np.testing.assert_allclose(a.terms, b.terms, rtol=0.05, atol=0.02)
+
+
+def test_the_rule_of_09_has_the_margins_that_skogestad_gives():
+    for T, L in ((1.0, 0.1), (0.5, 0.5), (0.1, 2.0)):
+        kp, ki, kd = rule(4.0, T, L, L)
+        w = np.geomspace(1e-2, 60, 20_000) / L
+        s = 1j * w
+        loop = (kp + ki / s + kd * s) * 4.0 * np.exp(-s * L) / (T * s + 1) / s
+        assert control.stability_margins(control.frd(loop, w))[:2] == pytest.approx((2.96, 46.9), rel=3e-3)

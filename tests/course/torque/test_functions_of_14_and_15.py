@@ -27,7 +27,7 @@ WRONG = [  # function, its body, what is said
     ("adaptive_step", "return theta - gain * Y * s[:, None]", "dt is missing"),
     ("adaptive_step", "return theta - dt * gain * s[:, None]", "Y is missing"),
     ("adaptive_step", "return theta - dt * Y * s[:, None]", "table of gains"),
-    ("adaptive_step", "return -dt * gain * Y * s[:, None]", "change alone"),
+    ("adaptive_step", "return -dt * gain * Y * s[:, None]", "only the change"),
     ("adaptive_step", "return theta - dt * gain * Y * s", "\\(3, *20\\)"),
     ("adaptive_step", "return theta - dt * gain * Y * s[::-1, None]", "another joint"),
     ("adaptive_step", "theta -= dt * gain * Y * s[:, None]\n    return theta", "changes what it was given"),

@@ -10,7 +10,6 @@ from ir50p_lab.controllers import (
 from ir50p_lab.course.printed import control as printed
 from ir50p_lab.course.torque import views
 from ir50p_lab.modelling import THESIS_C, THESIS_RODS
-from ir50p_lab.modelling.named_arms import thesis_theta
 from ir50p_lab.signals import quintic, sinusoid
 from ir50p_lab.simulation import simulate
 
@@ -41,8 +40,11 @@ def test_rms_and_lateness():
 
 
 def test_printed_parameters_are_model_c():
-    given = printed.PARAMETERS_2_1_2
-    np.testing.assert_array_equal(thesis_theta(**given), THESIS_C)
+    m, l, lc, Izz, Iyy, Iyz = (np.array(one) for one in printed.PARAMETERS_2_1_2.values())
+    swing = m[2] * lc[2]
+    inertial = m[0] * lc[0] ** 2 + sum(Izz), m[1] * lc[1] ** 2 + m[2] * l[1] ** 2, m[1] * lc[1] + m[2] * l[1]
+    inertial += swing, swing * lc[2], swing * l[1], *Iyz[1:], *Iyy[1:]
+    np.testing.assert_allclose(THESIS_C, np.tile([*inertial, *[0.0] * 10], (3, 1)))
 
 
 def test_printed_equations_cost_more_than_parameters_20_per_cent_off():
