@@ -42,7 +42,7 @@ def quintic(q0, q1, *, duration, start=0.0):
 
     q = q0 + (q1 - q0)(10 s^3 - 15 s^4 + 6 s^5),  s = (t - start)/duration
 
-    The largest velocity is 15/8 |q1 - q0|/duration, half way; the largest acceleration
+    The largest velocity is 15/8 |q1 - q0|/duration, halfway; the largest acceleration
     10/sqrt(3) |q1 - q0|/duration^2. Before `start` it rests at q0, after the end at q1.
 
     Args: q0, q1: (3,) rad (may be equal); duration: s, > 0; start: s.

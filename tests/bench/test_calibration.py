@@ -132,7 +132,7 @@ def test_a_file_gives_the_same_calibration(tmp_path):
 @pytest.mark.parametrize(
     ("text", "match"),
     [
-        ("slope = [1, 2", "no calibration"),
+        ("slope = [1, 2", "not a calibration"),
         ("slope = [189, 122, 191]", "missing 1 required .*'zero'"),
         ("slope = [189, nan, 191]\nzero = [512, 512, 512]", "nan"),
         ("slope = [189, 122, 191]\nzero = [512, 512, 512]\ngain = 3", "unexpected keyword argument 'gain'"),

@@ -286,11 +286,11 @@ def spoilt(cell):
 
 
 WRONG = [
-    *((spoilt(cell), r"line 4: .* is no number; repair") for cell in ("1.500.000", "01. Mai", "0,5 0,2")),
-    (spoilt("1.234"), r"'1.234' beside decimal commas is no number; repair"),
-    (ours(f"0,0.5,{ROW.split(',', 1)[1]}", f"########,{ROW}"), "'########' is no number; repair"),
+    *((spoilt(cell), r"line 4: .* is not a number; repair") for cell in ("1.500.000", "01. Mai", "0,5 0,2")),
+    (spoilt("1.234"), r"'1.234' beside decimal commas is not a number; repair"),
+    (ours(f"0,0.5,{ROW.split(',', 1)[1]}", f"########,{ROW}"), "'########' is not a number; repair"),
     (ours(f"0.00,{ROW}", "0.01,0.5,0.2", f"0.02,{ROW}"), r"line 5: 3 values for 15 columns .*delete that line"),
-    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "6o0"), f"0.02,{ROW}"), r"line 5: '6o0' is no number"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "6o0"), f"0.02,{ROW}"), r"line 5: '6o0' is not a number"),
     (ours(f"0.00,{ROW}", f"0.02,{ROW}", f"0.01,{ROW}"), r"line 6: t = 0.01 s is not later"),
     (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("0.2", "")), r"line 5: t or an angle is missing"),
     (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "inf")), r"line 5: a value is infinite"),

@@ -106,8 +106,8 @@ def test_motions_come_back_as_they_were(tmp_path):
     save_excitations(tmp_path / "some.json", {"x": MOTIONS["training"]}, made_by="here")
     assert load_excitations(tmp_path / "some.json") == {"x": MOTIONS["training"]}
     (tmp_path / "bad.json").write_text("{}")
-    refused("no file of excitations", load_excitations, tmp_path / "bad.json")
-    refused("no file of excitations", load_excitations, tmp_path / "none.json")
+    refused("not a file of excitations", load_excitations, tmp_path / "bad.json")
+    refused("not a file of excitations", load_excitations, tmp_path / "none.json")
 
 
 @pytest.mark.parametrize(

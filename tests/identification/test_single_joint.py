@@ -541,7 +541,7 @@ def test_bad_arguments():
 def test_anyway_goes_on_with_the_reason():
     t, q, u = recorded(ARM)
     found = fit_joint(t, q, np.clip(u, -2.0, 2.0), anyway=True)
-    assert "gone on anyway: u was clipped" in " ".join(found.warnings) and found.viscous > 0
+    assert "went on anyway: u was clipped" in " ".join(found.warnings) and found.viscous > 0
 
 
 # -- readings that are held, that fail, that lack their sign, that were cut off under noise ----------------------------

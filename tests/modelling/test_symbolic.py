@@ -199,7 +199,7 @@ def test_same_function_tells_apart():
 
 def test_refusals_say_what_to_do(inline):
     refused("choose 'in-line' or 'general' or 'thesis'", derive, links="bent")
-    refused("'lc4' is no parameter", inline.values, {"lc4": 1})
+    refused("'lc4' is not a parameter", inline.values, {"lc4": 1})
     refused(r"no number for .*m3", inline.values, {"g": 9.81, "l1": 1})
     refused("m1 = nan", inline.values, {"m1": float("nan")})
     refused("give a mapping", derive(links="thesis").values, IR50P)

@@ -26,30 +26,23 @@ def practise(bench, seed):
     pass
 
 
-def learn(bench, runs):
+def learn(bench, run):
     return bench.nominal
 """
 _NOT_LED = """
-def when_it_acts(off, off_rate, delay):
-    return off, off_rate
-
-
-class NotLed(views.OnLegs):
-    def __call__(self, sample, ahead):
-        return super().__call__(sample, 0)
-
-
-views = SimpleNamespace(**{name: getattr(views, name) for name in dir(views)} | {"OnLegs": NotLed})
+def when_it_acts(off, off_rate, plan_at, delay):
+    plan = plan_at(0)
+    return plan[0] + off, plan[1] + off_rate, plan
 """
 _PID = (
     _NOMINAL
     + """
 
-def quickest(theta, a, b):
+def quickest(theta, a, b, most):
     return max(0.25, 1.875 * np.abs(b - a).max() / {pace})
 
 
-def race(bench, theta, legs):
+def race(bench, theta, legs, meets):
     on_legs, pid = views.OnLegs(legs), my_robot.PID(*{gains})
     for sample in bench.race():
         q, qd, qdd = on_legs(sample, bench.delay)
@@ -74,7 +67,7 @@ def raced(item):
     world = World(seed)
     room = {}
     with contextlib.redirect_stdout(io.StringIO()):  # whose functions are in use
-        exec("from types import SimpleNamespace\n" + REFERENCE.read_text("utf-8") + STRATEGIES[name], room)
+        exec(REFERENCE.read_text("utf-8") + STRATEGIES[name], room)
         room["unknown_arm"](FarBench(world.answer))
     return Raced(world)
 

@@ -118,7 +118,7 @@ def test_a_driver_that_only_goes_silent_is_given_up_after_a_while(plug_in, monke
     refused("gives no picture", found.read, error=CameraError)
 
 
-@pytest.mark.parametrize(("channels", "words"), [(1, "one channel"), (2, "no colour picture")])
+@pytest.mark.parametrize(("channels", "words"), [(1, "one channel"), (2, "not a colour picture")])
 def test_a_webcam_without_colour(plug_in, channels, words):
     capture = plug_in(FakeCapture(channels=channels))
     refused(f"the picture of webcam 0.*{words}", Webcam, 0, error=ImageError)

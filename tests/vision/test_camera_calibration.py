@@ -236,7 +236,7 @@ SAID = {
     "4 views are few": lambda views: (views[:4], SIZE),
     "too few tilts: 0 of 5": lambda views: (tilted([0.03, -0.03, 0.05, -0.05, 0.04], range(5)), SIZE),
     "one axis": lambda views: (tilted([-0.6, -0.4, 0.3, 0.5, 0.6], [0] * 5), SIZE),
-    "of the picture only": lambda views: (tilted([0.4] * 5, range(5)), SIZE),
+    "corners fill only": lambda views: (tilted([0.4] * 5, range(5)), SIZE),
 }
 
 

@@ -95,7 +95,7 @@ HEIC = struct.pack(">I", 24) + b"ftypheic" + bytes(4) + b"mif1heic" + bytes(500)
 )
 def test_what_is_no_picture(tmp_path, data, capfd):
     (tmp_path / "a.jpg").write_bytes(data)
-    said = r"is no picture that can be read.*JPEG or PNG.*Most Compatible"
+    said = r"cannot be read as a picture.*JPEG or PNG.*Most Compatible"
     refused(said, load_image, tmp_path / "a.jpg", error=ImageError)
     assert capfd.readouterr() == ("", "")
 
