@@ -27,10 +27,10 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "course": 9155,  # without the next two
     "course/publishing": 729,
     "course/grading": 565,
-    "launcher": 588,
-    "root": 354,
+    "launcher": 589,
+    "root": 366,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_766, 20_071, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_779, 20_057, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

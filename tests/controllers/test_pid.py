@@ -17,11 +17,6 @@ def run(pid, angles, target=(0.0, 0.0, 0.0), start=0.0, period=0.01):
     return np.array([pid.step(start + k * period, q, hold(*target)) for k, q in enumerate(np.atleast_2d(angles))])
 
 
-def test_proportional_part():
-    u = PID(kp=(2, 3, 4)).step(0.0, [0.1, 0.2, 0.3], hold(1, 1, 1))
-    np.testing.assert_allclose(u, [2 * 0.9, 3 * 0.8, 4 * 0.7], rtol=1e-14)
-
-
 def test_velocity_filter_is_the_first_order_low_pass_it_says():
     pid = PID(kp=(0, 0, 0), kd=(1, 1, 1), filter_hz=5)
     u = run(pid, 0.01 * np.arange(30)[:, None] * np.ones(3))  # velocity 1 rad/s from sample 1 on

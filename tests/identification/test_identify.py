@@ -121,8 +121,3 @@ def test_motions_come_back_as_they_were(tmp_path):
 def test_bad_arguments(options, words):
     record = run("training", seconds=5)
     refused(words, identify, **{"recordings": record, **options})
-
-
-@pytest.mark.parametrize("step", ["filter_u", "decimate", "derivatives"])
-def test_steps_that_a_score_could_not_repeat_are_refused(step):
-    refused(step, identify, run("training", seconds=5), **{step: 2}, error=TypeError)

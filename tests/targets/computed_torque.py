@@ -102,6 +102,6 @@ def share(model, duration):
     return np.abs(np.einsum("nij,ij->ni", regressor(*rows.transpose(1, 0, 2)), model.theta)).max() / 255
 
 
-def text(values, digits=0):
+def text(values):
     """Three numbers with slashes between."""
-    return "/".join(f"{x:.{digits}f}" if x < 1e4 else "far" for x in values)
+    return "/".join(f"{x:.0f}" if x < 1e4 else "far" for x in values)
