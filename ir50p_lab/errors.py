@@ -12,7 +12,7 @@
     └─ WrongFolderError            the kernel runs in another copy of the course
     UserWarning                    SuspiciousArmWarning, SuspiciousAngleWarning, UnstableLoopWarning
 
-Beside what raises them stand LabBookError, RehearsalError and NotInABrowserError, all LabErrors, ClaimError (an
+Defined beside what raises them: LabBookError, RehearsalError and NotInABrowserError, all LabErrors, ClaimError (an
 AssertionError) and RecordingWarning (a UserWarning).
 """
 
@@ -26,7 +26,7 @@ class DependencyError(LabError, ImportError):
 
 
 class WrongFolderError(LabError, ImportError):
-    """The notebook lies in one copy of the course, and the package that it imports in another."""
+    """The notebook is in one copy of the course, and the package that it imports is in another."""
 
 
 class InputError(LabError, ValueError):
@@ -86,7 +86,7 @@ class PauseError(BenchError):
 
 
 class RecordingError(LabError, ValueError):
-    """A recording that cannot be continued, or a file that is no recording (the message names the line)."""
+    """A recording that cannot be continued, or a file that is not a recording (the message names the line)."""
 
 
 class VisionError(LabError):

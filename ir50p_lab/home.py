@@ -1,4 +1,4 @@
-"""Where everything of the student's lies, and what the environment variables IR50P_* say. Standard library only.
+"""Where everything of the student's is kept, and what the environment variables IR50P_* say. Standard library only.
 
 All variables are read here, in one way. Blanks and quotes around a value do not count (`set X="..."` of the Windows
 prompt keeps them); an empty one is unset. In a path, '~' is the home folder, and a relative one counts from the
@@ -23,7 +23,7 @@ def home():
 
 
 def check_folder():
-    """Raise WrongFolderError if the notebook lies in another copy of the course than this package.
+    """Raise WrongFolderError if the notebook is in another copy of the course than this package.
 
     So it is after a folder was copied together with its .venv: its Python imports the package of the old folder, and
     what the student writes would be kept there.
@@ -35,7 +35,7 @@ def check_folder():
     copy = next(copies, PROJECT)
     if not IN_BROWSER and not copy.samefile(PROJECT):
         raise WrongFolderError(
-            f"This notebook lies in {copy}, but its Python belongs to {PROJECT}: what you write would be kept there. "
+            f"This notebook is in {copy}, but its Python belongs to {PROJECT}: what you write would be kept there. "
             f"Close JupyterLab, open a terminal in {copy} and run 'python3 -m ir50p_lab' (Windows: "
             "'py -m ir50p_lab'): it sets up this copy."
         )

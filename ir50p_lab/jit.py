@@ -1,8 +1,8 @@
 """`jit`: numba's njit, with a cache on disk that notices when any compiled file changed.
 
-numba checks only the file of the function itself: machine code that has inlined a function or a constant of another,
-since changed file would be used on, silently. Here the folder of the cache is named by a hash of all compiled files and
-of those whose names they import.
+numba checks only the file of the function itself: machine code that has inlined a function or a constant of another
+file, changed since, would silently stay in use. Here the folder of the cache is named by a hash of all compiled files
+and of those whose names they import.
 
 Without numba, in a browser tab, `jit` is the identity: everything runs in plain Python, some fifty times slower.
 """
@@ -28,7 +28,7 @@ _PACKAGE = Path(__file__).parent
 
 @functools.cache
 def cache_folder():
-    """Where the machine code of these sources lies: the first of `_places` that takes files.
+    """Where the machine code of these sources is kept: the first of `_places` that takes files.
 
     None where there is none: each process compiles for itself then.
     """
@@ -71,7 +71,7 @@ def jit(*, fastmath=("contract",), **options):
 
 
 def with_cache(decorator, function, *signature, **options):
-    """Decorate a function by a decorator of numba's that shall keep its machine code in `cache_folder()`."""
+    """Decorate a function by a decorator of numba's that has to keep its machine code in `cache_folder()`."""
     folder = cache_folder()
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
     try:

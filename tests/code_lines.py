@@ -24,13 +24,13 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "bench": 2383,
     "identification": 1486,
     "vision": 2279,
-    "course": 9118,  # without the next two
+    "course": 9155,  # without the next two
     "course/publishing": 729,
     "course/grading": 565,
-    "launcher": 588,
-    "root": 354,
+    "launcher": 589,
+    "root": 366,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_729, 20_765, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_779, 20_057, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -44,7 +44,7 @@ def pytest_collection_modifyitems(config, items):
 
 @cache
 def _marks_of(path):
-    return [mark for mark, places in MARKS.items() if any(path.is_relative_to(TESTS / place) for place in places)]
+    return {mark for place, marks in MARKS.items() if path.is_relative_to(TESTS / place) for mark in marks.split()}
 
 
 def _is_asked_for(item, option):

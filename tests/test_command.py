@@ -41,9 +41,8 @@ def test_exit_code_and_a_second_try_for_what_measures_time(started, codes, code)
 
 
 def test_marked_files_exist():
-    for places in MARKS.values():
-        for place in places:
-            assert (TESTS / place).exists(), place
+    for place in MARKS:
+        assert (TESTS / place).exists(), place
 
 
 # -- everywhere --------------------------------------------------------------------------------------------------------

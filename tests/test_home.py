@@ -112,7 +112,7 @@ def test_a_notebook_in_a_copied_folder_does_not_write_into_the_old_one(tmp_path,
     monkeypatch.chdir(copy / "notebooks")
     check_folder()  # a folder that only looks alike is none of ours
     (copy / "environment.txt").touch()
-    with pytest.raises(WrongFolderError, match=r"This notebook lies in .*copy, but its Python belongs to "):
+    with pytest.raises(WrongFolderError, match=r"This notebook is in .*copy, but its Python belongs to "):
         check_folder()
     monkeypatch.chdir(PROJECT / "notebooks")
     check_folder()

@@ -83,7 +83,7 @@ def chosen_copy(seed):
 
     IR50P_UNIT (whole, default 0) is the copy that `seed=0` means, the others are counted from it: a course that
     compares two copies compares two neighbours. IR50P_SEED (whole; unset: none) gives the same copy other noise.
-    Raises InputError if one of them is no whole number from 0.
+    Raises InputError if one of them is not a whole number from 0.
     """
     return int(seed) + (_whole("IR50P_UNIT") or 0), _whole("IR50P_SEED")
 

@@ -1,8 +1,8 @@
 """`bench.start(controller, reference)`: the loop of the lesson in the background, and the handle of it.
 
-On hardware it has a process of its own: nothing the notebook does can make it late, and it outlives nobody. The child
-gets over a pipe what to run, opens the port itself and answers over another pipe. It cuts the drive when its parent
-dies, however that dies; if the child itself dies, no more frames come and the board cuts after 100 ms.
+On hardware it has a process of its own: nothing the notebook does can make it late, and it outlives no notebook. The
+child is told over a pipe what to run, opens the port itself and answers over another pipe. It cuts the drive when its
+parent dies, however that happens; if the child itself dies, no more frames come and the board cuts after 100 ms.
 """
 
 import contextlib

@@ -31,7 +31,7 @@ class Bench:
     recording                    the Recording of the last run, complete up to the last sample
     cut()                        drive off at once (the bridges brake)
     start(controller, reference) the same loop in the background, for the live panel
-    close()                      go to the rest pose, let go, give the port free
+    close()                      go to the rest pose, let go, release the port
     ============================ ====================================================================================
 
     A command holds until the next one, at most to the end of its run. Leaving `with` in order moves the arm to its
@@ -63,7 +63,7 @@ class Bench:
         record_to: folder for recordings (default: recordings/ in the student's folder), False for none on disk.
         """
         arm = load_arm() if arm is None else arm
-        lengths(arm)  # refuses what is no Arm
+        lengths(arm)  # refuses what is not an Arm
         if not (isinstance(period, int | float | np.number) and 0.001 <= period <= 1.0):
             raise InputError(f"period = {period!r} s: give 0.001 to 1 s (the thesis samples every 0.01 s)")
         self.arm, self.calibration, self.period = arm, calibration or nominal_calibration(arm), float(period)
@@ -95,7 +95,7 @@ class Bench:
         return True
 
     def _close(self):
-        """Give everything free; must work in any state."""
+        """Release everything; must work in any state."""
 
     def radians(self, counts):
         """Angles of the counts just measured; only a recording knows better."""
@@ -148,7 +148,7 @@ class Bench:
             self.abort()
 
     def close(self):
-        """Go to the rest pose, let go, and give the port free. May be called twice."""
+        """Go to the rest pose, let go, and release the port. May be called twice."""
         if not self.is_open:
             return
         try:
@@ -161,7 +161,7 @@ class Bench:
             self.abort()
 
     def abort(self):
-        """Cut the drive and give the port free, at once. May be called twice."""
+        """Cut the drive and release the port, at once. May be called twice."""
         if not self.is_open:
             return
         self.cut()
@@ -263,10 +263,10 @@ class Bench:
         Args:
             pwm: (3,), -255..255; sign is direction. Rounded to whole counts, limited, and set to 0 for a joint at an
             end of its travel that would be driven further out.
-            gripper: True closes, False opens, None leaves it. reference: q (3,) rad, only to be recorded beside.
+            gripper: True closes, False opens, None leaves it. reference: q (3,) rad, which is only recorded.
 
         Returns: what was really sent, (3,) PWM counts; zeros after a pause in which the drive was cut.
-        Raises InputError if pwm is no three finite numbers, or more than the lab's own file allows (the drive is cut
+        Raises InputError if pwm is not three finite numbers, or more than the lab's own file allows (the drive is cut
         first), BenchError outside a run, PauseError if the program has paused for longer than 0.5 s.
         """
         run = self._run
@@ -315,7 +315,7 @@ class Bench:
     def follow(self, controller, reference, seconds, *, record=True, **header):
         """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call.
 
-        Returns the Recording (None with record=False). Raises InputError if these are no controller and reference.
+        Returns the Recording (None with record=False). Raises InputError if these are not a controller and a reference.
         """
         check_controller(controller)
         check_reference(reference)

@@ -135,7 +135,7 @@ def _drive(bench, joint, sound, breakaway):
         wrong = f"PWM {pwm:+d} moved {name} by {moved[joint]:+.0f} counts: swap its two motor wires"
         _require(moved[joint] * sign > 0, wrong)
         moved_at.append(pwm)
-    stuck = "moved in no direction: has its motor no supply (current limit, ENABLE at 5 V, fuse), or is it blocked?"
+    stuck = "moved in no direction: does its motor lack supply (current limit, ENABLE at 5 V, fuse), or is it blocked?"
     _require(moved_at, f"{name} {stuck}")
     breakaway[joint] = moved_at
     return f"{name} breaks away at {' and '.join(f'{pwm:+d}' for pwm in moved_at)} PWM counts, as commanded"

@@ -99,7 +99,7 @@ class JointCalibration:
             points = tuple(_pairs(**data.pop(name)) for name in _JOINTS if name in data)
             return cls(points=points, remarks=tuple(data.pop("remarks", ())), **data)
         except (OSError, ValueError, TypeError, RecursionError) as error:
-            said = f"{path} is no calibration ({error})"
+            said = f"{path} is not a calibration ({error})"
             raise InputError(f"{said}: results(withdraw={Path(path).stem!r}), and calibrate again") from None
 
     def __repr__(self):
@@ -137,7 +137,7 @@ def nominal_calibration(arm):
     >>> nominal_calibration(IR50P).counts([0, 0, 0]).round(1)
     array([512. , 448.1, 696. ])
     """
-    lengths(arm)  # refuses what is no Arm
+    lengths(arm)  # refuses what is not an Arm
     low, high = np.clip((arm.q_min, arm.q_max), -np.pi, np.pi)
     slope = np.minimum(_SISTER_SLOPE, 2 * (_MIDDLE - _LOWEST) / (high - low))
     return JointCalibration(slope, _MIDDLE - slope * 0.5 * (low + high), source="nominal, not measured")
@@ -200,7 +200,7 @@ def _remarks(q, counts, slope, zero):
     if counts.min() <= 2 or counts.max() >= _FULL - 2:
         yield "a reading lies at the end of the converter's range: the potentiometer may turn on without it"
     if len(q) < 6:
-        yield f"only {len(q)} points: a misread one would not show; measure 10"
+        yield f"only {len(q)} points: a misread point would not show; measure 10"
         return
     off = q - (counts - zero) / slope
     far = np.abs(off).argmax()

@@ -8,7 +8,7 @@ IR50P_BENCH_FILE, else bench.toml in the project's folder; a table for each boar
     workspace = [[0.1, -0.4, 0.0], [0.6, 0.4, 0.7]]    # m, lowest and highest x, y, z of the tip
     faults = ["cable", "process"]                      # of cable, process, motor, potentiometer
 
-What a table leaves out is not capped, but for 255 counts and the arm's travel. Nothing is clipped to a cap: what goes
+What a table leaves out is not capped, except by 255 counts and the arm's travel. Nothing is clipped to a cap: what goes
 beyond it is refused, and the drive cut.
 """
 
@@ -72,7 +72,7 @@ def caps_of(bench_id):
         tables = tomllib.loads(path.read_text("utf-8-sig") if named or path.exists() else "")
         for name, table in tables.items():
             if not (name.startswith("board-") and isinstance(table, dict)):
-                raise InputError(f"{name!r:.60} is no table of a board: write [board-0a1b2c], as connect() says it")
+                raise InputError(f"{name!r:.60} is not a table of a board: write [board-0a1b2c], as connect() says it")
         known = {key: _checked(key, value) for key, value in tables.get(bench_id, {}).items()}
     except (OSError, ValueError, TypeError, RecursionError) as error:
         raise InputError(f"the lab's own file {path}, for {bench_id}: {error}. Mend it: docs/with_the_arm.md") from None

@@ -28,9 +28,9 @@ def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=Non
 
     Returns: an open bench, for `with connect() as bench:`.
     Raises: PortError or BoardError if the port asked for does not open or no board of ours answers there, with the
-    remedy; RecordingError for a file that is no recording; InputError for a `port` that is none of the above, and for a
-    lab's own file that is wrong (`caps`). A board that was only looked for never raises otherwise: the line says why it
-    was not taken.
+    remedy; RecordingError for a file that is not a recording; InputError for a `port` that is none of the above, and
+    for a lab's own file that is wrong (`caps`). A board that was only looked for never raises otherwise: the line says
+    why it was not taken.
     """
     common = {"arm": arm, "calibration": calibration, "period": period, "record_to": record_to}
     if port is None and not setting(VARIABLE):

@@ -89,7 +89,7 @@ class Link:
         self._parser = protocol.FrameParser()
 
     def close(self):
-        """Give the port free."""
+        """Release the port."""
         self._transport.close()
 
     def _note(self, reply):

@@ -87,7 +87,7 @@ class Recorder:
             self._file = None
             with contextlib.suppress(OSError):  # else its last line is cut off; loading leaves that out
                 os.truncate(self.path, self.path.read_bytes().rfind(b"\n") + 1)
-            said = f"the recording {self.path} cannot be written on: {error.strerror}; what stands in it is safe"
+            said = f"the recording {self.path} cannot be continued: {error.strerror}; what it holds is safe"
             raise RecordingError(f"{said}. The run ends here. Make room, or {_ELSEWHERE}") from None
 
     def close(self, statistics=None):

@@ -95,7 +95,7 @@ def read(path):
             names = bare.replace('"', "")
             separator = names[1:2]
             if separator not in (",", ";", "\t") or names != separator.join(COLUMNS):
-                raise RecordingError(f"{place}: {bare[:60]!r} where the columns of a recording stand; {_FOREIGN}")
+                raise RecordingError(f"{place}: {bare[:60]!r} where the columns of a recording should be; {_FOREIGN}")
         elif bare:  # else an empty line of a spreadsheet
             rows.append(_read_row(line, separator, place))
             places.append(place)
@@ -137,7 +137,7 @@ def _read_row(line, separator, place):
     cells = next(csv.reader([line], delimiter=separator)) if quoted else line.split(separator)
     if "," in "".join(cells):
         if pointed := next((cell for cell in cells if "." in cell), ""):  # of thousands, or a date
-            raise RecordingError(f"{place}: {pointed!r} beside decimal commas is no number; repair or delete that line")
+            raise RecordingError(f"{place}: {pointed!r} beside decimal commas is not a number; repair or delete it")
         cells = [cell.replace(",", ".") for cell in cells]
     if len(cells) < len(COLUMNS) or "".join(cells[len(COLUMNS) :]).strip():  # a spreadsheet may add empty ones
         said = f"{place}: {len(cells)} values for {len(COLUMNS)} columns"
@@ -150,7 +150,7 @@ def _number(cell, place):
     try:
         return float(cell.strip(' "') or "nan")
     except ValueError:
-        raise RecordingError(f"{place}: {cell.strip()!r} is no number; repair or delete that line") from None
+        raise RecordingError(f"{place}: {cell.strip()!r} is not a number; repair or delete that line") from None
 
 
 def check(table, places):

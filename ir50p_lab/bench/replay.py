@@ -15,7 +15,7 @@ from ir50p_lab.errors import InputError, RecordingError
 class ReplayBench(Bench):
     """A bench whose samples are those of a recording, from its beginning in each run.
 
-    `drive` limits and records your command as on every bench, but nothing moves by it: the samples show what the
+    `drive` limits and records your command as on every bench, but it moves nothing: the samples show what the
     recorded command did. Compare `bench.recording.u` (yours) with `bench.original.u` (what was sent then). A run that
     asks for more than was recorded ends with the recording and says so.
 

@@ -44,7 +44,7 @@ def _rest_pose(arm):
 def trajectory_to_rest(arm, q, period, limit_pwm=255, speed=np.inf):
     """Controller and reference that bring the arm from q (3,) rad to its rest pose: first joint 2, then the others.
 
-    Joint 2 lifts the arm off the table before joint 3 folds. The gains are those of Tables 4.1-4.3, but for the
+    Joint 2 lifts the arm off the table before joint 3 folds. The gains are those of Tables 4.1-4.3, except for the
     integral of joint 2: with 10 it stops up to 0.3 rad short, and then sinks. limit_pwm, speed: what is allowed, PWM
     counts and rad/s, a number or one of each joint.
     Returns: PID, reference.

@@ -31,7 +31,7 @@ class Result(namedtuple("Result", _FIELDS)):
 
 
 def folder():
-    """Where results lie: Path; it may not exist yet."""
+    """Where results are kept: Path; it may not exist yet."""
     return home() / "results"
 
 

@@ -211,7 +211,7 @@ class RunawayGuard:
         self.refuse(watch_step(self.watch, sample.t, sample.q, pwm), sample.t)
 
     def begin_anew(self):
-        """A hand is on the arm: what it does is no runaway. Look at the joints anew from the next block on."""
+        """A hand is on the arm: what it does is not a runaway. Look at the joints anew from the next block on."""
         self.watch.now[1] = 0
 
     def admit(self, pwm):
@@ -248,7 +248,7 @@ class RunawayGuard:
             question = "Is a wire or the track of its potentiometer torn, or the supply above the arm's actuators.V?"
         elif alarm >= STILL:
             found = f"stood still at {angle:.3f} rad although its command was {drive:+.0f} PWM counts"
-            question = "Has its potentiometer come loose, has its motor no supply, or does something block it?"
+            question = "Has its potentiometer come loose, does its motor lack supply, or does something block it?"
         else:
             found = f"ran at {speed:+.2f} rad/s against its command of {drive:+.0f} PWM counts and did not slow down"
             question = "Are its two motor wires, or the two ends of its potentiometer, swapped?"

@@ -154,7 +154,7 @@ class SerialBench(Bench):
         return f"board-{self.identity.board_id:06x}"
 
     def give_id(self):
-        """Give the board an id by chance if it has none; it keeps it for good. Brakes. Returns `bench_id`.
+        """Give the board a random id if it has none; the board keeps it for good. It brakes. Returns `bench_id`.
 
         Raises BoardError if the bench is closed or the board does not answer.
         """

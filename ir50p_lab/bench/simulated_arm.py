@@ -86,7 +86,7 @@ class SimulatedArm:
     """
 
     def __init__(self, arm, unit=UNIT, seed=0, *, q0=None):
-        lengths(arm)  # refuses what is no Arm
+        lengths(arm)  # refuses what is not an Arm
         if arm.actuators is None:
             remedy = "add [actuators] to its file, or Actuators.from_joint_data(...) to the Arm"
             raise ArmError(f"{arm.name} has no actuators, so nobody knows what a PWM count does to it: {remedy}")

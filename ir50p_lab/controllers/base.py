@@ -90,7 +90,7 @@ class Controller:
         u = np.empty(3)
         if self.state[law.STARTED] and t < self.state[law.TIME]:
             before = self.state[law.TIME]
-            said = f"t = {t:.6g} s after {before:.6g} s: time runs backwards, and this step counts as none"
+            said = f"t = {t:.6g} s after {before:.6g} s: time runs backwards, and this step does not count"
             warnings.warn(f"{said}; call reset() before another run", stacklevel=2)
         law.law_step(self.parameters, self.state, float(t), _plain(measured), _plain_rows(reference), u)
         if not math.isfinite(u[0] + u[1] + u[2] + t):
@@ -159,7 +159,7 @@ def check_controller(controller):
 
 
 def check_reference(reference, *, sampled=False):
-    """Raise InputError if it is no function; sampled: what only has `sample(times)` is enough."""
+    """Raise InputError if it is not a function; sampled: what only has `sample(times)` is enough."""
     if not (callable(reference) or (sampled and hasattr(reference, "sample"))):
         raise InputError(
             f"reference = {reference!r:.60}: give a function of time, target(t) -> (q, qd, qdd), such as hold([...])"

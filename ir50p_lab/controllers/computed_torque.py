@@ -69,7 +69,7 @@ class ComputedTorque(Controller):
         self.set_gains(gains("kp", kp), gains("ki", ki), gains("kd", kd))
 
     def header(self):
-        """Lines for the head of a recording: gains, filter, delay, and the model as 20 numbers a joint."""
+        """Lines for the head of a recording: gains, filter, delay, and the model as 20 numbers for each joint."""
         return {**super().header(), "delay_s": f"{self.parameters[law.DELAY]:g}", "model_unit": self.unit}
 
     @property

@@ -1,4 +1,4 @@
-"""The PID of the textbook, in continuous time: the thesis' simulation case (2.3), Tables 2.1-2.3."""
+"""The PID of the textbook, in continuous time: the thesis's simulation case (2.3), Tables 2.1-2.3."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ir50p_lab.controllers.base import gains, limits, three
 class ContinuousPID:
     """u(t) = kp e + ki int e dt + kd de/dt at every instant, with the true velocity    (2.3)
 
-    No computer runs it: it has no sampling period, filter or delay. It exists to reproduce the thesis' Simulink
+    No computer runs it: it has no sampling period, filter or delay. It exists to reproduce the thesis's Simulink
     figures and to compare with the sampled `PID`.
 
     Args: kp, ki, kd: (3,) N m per rad, per rad s, per rad/s; limit: N m, scalar or (3,), None: not limited (the

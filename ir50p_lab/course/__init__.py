@@ -1,6 +1,6 @@
 """What the notebooks share, in rooms: a room is a subject, and what two subjects need lies below them.
 
-From below: `draw`, `lab_book`, `printed` (the thesis' equations), `robot` (what the student owns), `checking`;
+From below: `draw`, `lab_book`, `printed` (the thesis's equations), `robot` (what the student owns), `checking`;
 on these `my_robot` and `live_arm`, and on all of them the subjects, from `start` to `reaching`.
 """
 
@@ -21,6 +21,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "draw.style": ["new_figure", "subplots"],
         "draw.traces": ["curves"],
         "draw.widgets": ["live", "slider"],
+        "grading.judge": ["judged"],
         "lab_book.claims": ["ClaimError", "claim"],
         "lab_book.data_file": ["data_file"],
         "lab_book.predictions": ["helped_by", "keep", "measured", "note", "partners", "predict", "why"],
@@ -31,5 +32,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "loops.rehearse": ["RehearsalError", "rehearse"],
         "publishing.take_home": ["take_home"],
         "robot.arm_numbers": ["parts"],
+        "unknown.hand_in": ["hand_in"],
     },
 )

@@ -33,7 +33,7 @@ def _fill(gravity, q, qd, qdd, direction, out):
         # gravity
         two[2] = gravity * c2
         two[3] = three[3] = gravity * c23
-        # the thesis' constant products of inertia
+        # the thesis's constant products of inertia
         one[6] = B
         one[7] = B + C
         two[6] = two[7] = three[7] = A

@@ -19,4 +19,4 @@ def load_excitations(path=DATA):
         rows = json.loads(Path(path).read_text(encoding="ascii"))["motions"]
         return {name: fourier(**row) for name, row in rows.items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise InputError(f"{path} is no file of excitations such as {DATA.name}: {error!r:.80}") from None
+        raise InputError(f"{path} is not a file of excitations such as {DATA.name}: {error!r:.80}") from None

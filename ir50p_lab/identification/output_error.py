@@ -101,7 +101,7 @@ def output_error(
 
     Nothing is differentiated, and noise in the angles does no harm: the model is driven by the same controller on the
     same reference from the same start. It may stick, so that breakaway friction fs and the Stribeck speed qs can be
-    found, which no linear theta has (the thesis' closing complaint). Inertial and friction terms stay >= 0, fs >= fc.
+    found, which no linear theta has (the thesis's closing complaint). Inertial and friction terms stay >= 0, fs >= fc.
 
     Args:
         estimate: Estimate or theta (3, 20) to start from: `identify`. recording; reference: its motion (None: as

@@ -54,11 +54,11 @@ class Warnings(list):
         """Refuse data that make the numbers meaningless."""
         if not self.anyway:
             raise IdentificationError(" Also: ".join([f"{self.who}{sentence} (anyway=True goes on)", *self]))
-        self.add(f"gone on anyway: {sentence}")
+        self.add(f"went on anyway: {sentence}")
 
 
 def at_bounds(names, x, low, high, room=0.0):
-    """Tell which values stand at a bound of their search: they are no measurement, their error is infinite.
+    """Tell which values stand at a bound of their search: they are not a measurement, their error is infinite.
 
     Args: names (p); x (p,); low, high: numbers or (p,); room: what is nearer to a bound than this stands at it.
     Returns: sentences, none or one, and (p,) bool: where it is so.
@@ -66,7 +66,7 @@ def at_bounds(names, x, low, high, room=0.0):
     bounds = np.where(x - low < high - x, low, high)
     at = np.abs(x - bounds) <= room
     found = [f"{names[k]} = {x[k]:.4g} (bound {bounds[k]:.4g})" for k in np.flatnonzero(at)]
-    beyond = "the data may ask for what lies beyond, the error is infinite"
+    beyond = "the data may call for values beyond it, the error is infinite"
     return [f"at a bound: {', '.join(found)}; {beyond}"] if found else [], at
 
 
@@ -323,5 +323,5 @@ def check_contradiction(warned, recordings, fit, least):
         apart = np.where(apart > np.maximum(0.05 * np.abs(x), small), apart, 0.0) / np.hypot(sigma[:, None], sigma)
         if apart.max(initial=0.0) > _CONTRADICT:
             odd = int(np.argmax(apart.sum(axis=0)))
-            value = f"{x[odd]:.4g} +- {sigma[odd]:.2g} beside {np.median(np.delete(x, odd)):.4g}"
+            value = f"{x[odd]:.4g} +- {sigma[odd]:.2g} where the others give {np.median(np.delete(x, odd)):.4g}"
             warned.add(f"recording {list(found)[odd]} contradicts the others: {name} {value}")

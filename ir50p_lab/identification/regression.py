@@ -49,7 +49,8 @@ def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
     Args:
         A: (n, p), or (n, k, p) for k equations a sample; y: (n,) or (n, k). Time first. Masked samples are left out.
         names: of the p columns.
-        tolerance: share of its length; a column that is a combination of those before it but for less is left out.
+        tolerance: share of its length; a column that is a combination of those before it to within that is left
+            out.
 
     Returns: LeastSquares. Its errors hold for residuals that are correlated in time and of unequal size
     (heteroscedasticity and autocorrelation consistent, `long_run_sum`). They leave out noise in A, which biases x.

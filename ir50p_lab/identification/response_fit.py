@@ -136,7 +136,7 @@ class _StepRecord:
         if np.ptp(y) <= 1e-12 * np.abs(y).max():
             raise IdentificationError(f"y stays at {y[0]:.6g}: check sensor and power; is the step above the friction?")
         if (after := int((t >= times[0]).sum())) < _FEWEST:
-            raise IdentificationError(f"only {after} samples from the first change of u on: record {_FEWEST} or more")
+            raise IdentificationError(f"only {after} samples after the first change of u: record {_FEWEST} or more")
         places = check_outliers(warned, "y", t, y, "left out; look for their cause")
         t, y = np.delete(t, places), np.delete(y, places)
         self.seconds, self.y_range, self.u_range = float(t[-1] - times[0]), float(np.ptp(y)), float(np.abs(jumps).max())
@@ -234,7 +234,7 @@ def _check_shape(record, rate, L, slope, e):
     if F < _FOLLOWS or (F / wider**2 < _FOLLOWS and explained < 0.5):
         warned.refuse(f"y does not follow u ({explained:.1%} explained): make a larger step, or average recordings")
     elif not_white > _MISSED * total and correlation > 0.5:
-        said = f"the response has not the shape of the model ({explained:.0%} explained)"
+        said = f"the response does not have the shape of the model ({explained:.0%} explained)"
         doubt = warned.refuse if explained < _MEANINGFUL else warned.add
         doubt(f"{said}: drift, a limit, a swing? Fit a swing by scipy's least_squares with control.forced_response")
     if rate * (1 - L) < 1 / _SLOWEST:
@@ -253,7 +253,7 @@ def _check_parameters(record, T, L, errors, e):
         warned.add(f"the dead time is not identifiable, {L / period:.2f} of a sampling period: use no rule with 1/L")
         errors[2] = max(errors[2], period)
     elif L < 2 * errors[2]:
-        warned.add(f"dead time {L * seconds:.3g} s is less than two standard errors: it cannot be told from none")
+        warned.add(f"dead time {L * seconds:.3g} s is less than two standard errors: it cannot be told from zero")
     said, at = at_bounds(["L"], np.array([L * seconds]), 0.0, record.latest * seconds, 1e-3 * period * seconds)
     warned.extend(said)
     errors[2] = math.inf if at else errors[2]

@@ -138,7 +138,7 @@ def fit_joint(
         runs += _runs(warned, one, delay, k)
     warned.who = ""
     if len({run.angles.shape[1] for run in runs}) > 1:
-        raise InputError("qd in some of the recordings only: give it in all, or in none")
+        raise InputError("qd is in some of the recordings only: give it in all, or in none")
     unit = float(np.std(np.concatenate([run.u for run in runs])))  # for columns of a size, whatever u counts in
     if len(recordings) > 1:
         options = {"terms": terms, "cutoff_hz": cutoff_hz, "delay": delay, "held": held, "slow": slow, "anyway": anyway}
@@ -371,7 +371,7 @@ def _check_parameters(warned, parameters, found, lower, others):
     """Warn of parameters that are negative, smaller than twice their error, or depend on the cut-off."""
     negative = [name for name, (x, sigma) in parameters.items() if name in _PHYSICAL and x < -3 * sigma]
     if {"viscous", "coulomb"} <= set(negative):
-        warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q turned round?")
+        warned.refuse("viscous and Coulomb friction come out negative: is the sign of u or q reversed?")
     if "viscous" in parameters and "bent" in others:
         bent, k = others["bent"], list(parameters).index("viscous")
         much = abs(bent.x[k] - found.left.x[k]) > _BENT[0] * abs(found.left.x[k])
@@ -384,7 +384,7 @@ def _check_parameters(warned, parameters, found, lower, others):
         if math.isinf(sigma):
             warned.add(f"{said} cannot be told from these data: record several speeds to both sides, faster reversals")
         elif name in negative:
-            warned.add(f"{said} is negative {value}: is u late or early (delay=), or its sign turned?")
+            warned.add(f"{said} is negative {value}: is u late or early (delay=), or its sign reversed?")
         elif name in _PHYSICAL and sigma > 0.5 * abs(x):
             warned.add(f"{said} is lost in its error {value}: record faster reversals, several speeds")
         elif name in _PHYSICAL and depends[k]:

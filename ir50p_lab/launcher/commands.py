@@ -78,7 +78,7 @@ def main(arguments, root=ROOT):
         print(from_error(error, root), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print(f"\nStopped. Run '{COMMAND}' again whenever you like: it takes up what is missing.", file=sys.stderr)
+        print(f"\nStopped. Run '{COMMAND}' again whenever you like: it goes on with what is missing.", file=sys.stderr)
         return 130
 
 

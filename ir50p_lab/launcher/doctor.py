@@ -1,4 +1,4 @@
-"""A report on this machine, as one would paste it into a question, with a verdict at the end."""
+"""A report on this machine, as you would paste it into a question, with a verdict at the end."""
 
 import os
 import platform

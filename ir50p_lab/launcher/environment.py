@@ -120,7 +120,7 @@ class Environment:
         if fault not in ("", _NOT_MADE):
             print(f"The folder .venv is {fault}: building it again.")
         print(f"Set-up of {self.folder}: takes a minute or two, once. Ctrl-C stops it safely.")
-        importlib.import_module("ensurepip")  # without it venv fails half way and does not say why
+        importlib.import_module("ensurepip")  # without it venv fails halfway and does not say why
         importlib.import_module("venv")
         self._empty()
         print(f"[1/4] Python {sysconfig.get_python_version()} environment")

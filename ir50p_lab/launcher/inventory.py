@@ -49,7 +49,7 @@ def direct_dependencies(root):
 def broken_imports(distributions):
     """Import what the distributions hold, and every module of the lab book: {module: why it cannot be imported}.
 
-    The modules only if all else can be imported: what they need is named then.
+    The modules only if everything else can be imported: what they need is named then.
     """
     names = [
         name

@@ -33,7 +33,7 @@ class Actuators:
     limit_pwm PWM count that gives the full supply    counts
     ========= ======================================= ===================
 
-    Raises ArmError if a value is not positive (Jm may be 0), InputError for wrong shapes and what is no number.
+    Raises ArmError if a value is not positive (Jm may be 0), InputError for wrong shapes and what is not a number.
     """
 
     N: tuple = field(metadata={"comment": "gear ratio"})

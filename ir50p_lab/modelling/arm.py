@@ -41,7 +41,7 @@ class Arm:
     Link frames: link 1 has z along the column; links 2 and 3 have x along the link and z along the joint axis.
     Only such in-line links are expressed exactly by the 20 parameters theta; `derive(general=True)` derives the others.
 
-    Raises ArmError for what no rigid body can have, InputError for wrong shapes and what is no number; warns
+    Raises ArmError for what no rigid body can have, InputError for wrong shapes and what is not a number; warns
     SuspiciousArmWarning for what is hardly meant (the list stays in `suspicions`).
     """
 
@@ -121,7 +121,7 @@ class Arm:
         """The 20 parameters, (3, 20): three equal rows, torque in N m.
 
         Order and meaning: the in-line rigid arm with rotors, then fv, fc per joint, Tf, j3 (2.50 corrected).
-        theta 7 and 8 (the thesis' constant products of inertia) are 0: no rigid body has them.
+        theta 7 and 8 (the thesis's constant products of inertia) are 0: no rigid body has them.
         The Stribeck part of the friction is not linear in parameters and is not in theta.
         """
         (_, m2, m3), (_, l2, _), (_, lc2, lc3) = self.m, self.l, self.lc

@@ -13,7 +13,7 @@ _SIN_ALPHA = (1.0, 0.0, -1.0)
 def dh_matrix(theta, d, a, alpha):
     """One Denavit-Hartenberg step A = Rot_z(theta) Trans_z(d) Trans_x(a) Rot_x(alpha)    (1.23)-(1.29)
 
-    theta turns about the old z (the thesis' text under (1.21) says x), alpha about the new x.
+    theta turns about the old z (the thesis's text under (1.21) says x), alpha about the new x.
 
     Args: theta, alpha rad; d, a m; scalars or arrays of one shape (n,).
     Returns: (4, 4) or (n, 4, 4), takes coordinates of frame i to frame i-1.
@@ -32,11 +32,11 @@ def _step(theta, d, a, cos_alpha, sin_alpha):
 
 
 def lengths(arm):
-    """l1, l2, l3 as an array (3,) m. Raises InputError if `arm` is no Arm."""
+    """l1, l2, l3 as an array (3,) m. Raises InputError if `arm` is not an Arm."""
     try:
         return arm.lengths
     except AttributeError:
-        raise InputError(f"arm = {arm!r:.60}: give an Arm, such as load_arm(), no {type(arm).__name__}") from None
+        raise InputError(f"arm = {arm!r:.60}: give an Arm, such as load_arm(), not a {type(arm).__name__}") from None
 
 
 def dh_table(arm, q):

@@ -45,7 +45,7 @@ def bodies(symbols, links, frames, rotations):
     for i in "123":
         xx, yy, zz, xy, xz, yz = (s.get(f"I{pair}{i}", 0) for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
         tensors.append(sympy.Matrix([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]]))
-    # The thesis' inertias stay constant in the frame that turns with joint 1 only.
+    # The thesis's inertias stay constant in the frame that turns with joint 1 only.
     given_in = [rotations[0]] * 3 if links == "thesis" else rotations
     return centres, list(zip(given_in, tensors, strict=True))
 
@@ -60,7 +60,7 @@ def angular_jacobians(frames):
 def mass_matrix(q, symbols, Jv, Jw, tensors):
     """M = sum of m Jv^T Jv + Jw^T R I R^T Jw, plus the rotors on the diagonal (1.90 corrected).
 
-    M does not change when the whole arm turns about joint 1, nor does what joints 2 and 3 have of it when both links
+    M does not change when the whole arm turns about joint 1, nor does the part of joints 2 and 3 when both links
     turn about joint 2. So it is worked out where that is shortest: at q1 = 0, that part with the forearm level.
     """
     M = sympy.diag(*(symbols[f"j{i}"] for i in "123"))

@@ -16,7 +16,7 @@ from ir50p_lab.modelling import closed_form as cf
 from ir50p_lab.modelling.arm import Arm
 from ir50p_lab.modelling.kernel import NOT_FINITE, evaluate, kernel, same_shape, warn_of_degrees
 
-STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value; an Arm carries its own
+STANDARD_GRAVITY = 9.81  # m/s^2, the thesis's value; an Arm carries its own
 
 
 def as_theta(arm, g=None):

@@ -1,4 +1,4 @@
-"""The arms of the course: the real one (with its assumptions) and the thesis' models."""
+"""The arms of the course: the real one (with its assumptions) and the thesis's models."""
 
 import dataclasses
 
@@ -39,7 +39,7 @@ def _drive(stall_torque, no_load_speed):
 
 
 # The thesis gives neither masses nor motors of the IR50P. What is not sourced is an assumption, chosen so that
-# identification lands near the thesis' Table 4.4; nothing here was measured on an IR50P.
+# identification lands near the thesis's Table 4.4; nothing here was measured on an IR50P.
 IR50P = Arm(
     name="IR50P",
     # Source: published code of a sister arm (IR52c): shoulder height 285, links 200 and 200 mm, hand 172 mm.
@@ -54,7 +54,7 @@ IR50P = Arm(
     Izz=(0.02, 0.0035, 0.0085),
     # Assumed: stall torque and no-load speed.
     **_drive(stall_torque=(4.0, 7.0, 6.0), no_load_speed=(2.5, 1.1, 1.3)),
-    # Assumed: the ROB3i manual gives 200 deg of travel, not where. Chosen so that the thesis' set points fit.
+    # Assumed: the ROB3i manual gives 200 deg of travel, not where. Chosen so that the thesis's set points fit.
     q_min=(-100 * _DEG, -50 * _DEG, -140 * _DEG),
     q_max=(100 * _DEG, 110 * _DEG, 30 * _DEG),
 )

@@ -83,7 +83,7 @@ class SymbolicModel:
     def read(self, name):
         """The entries of "M", "C", "g", "h" or "tau" as equations to read, without zeros: Formulas.
 
-        Of M only the upper triangle. In a notebook they appear in the thesis' notation, c_23 = cos(q2 + q3).
+        Of M only the upper triangle. In a notebook they appear in the thesis's notation, c_23 = cos(q2 + q3).
         Raises InputError for another name.
         """
         choice("name", name, ("M", "C", "g", "h", "tau"))
@@ -111,14 +111,14 @@ class SymbolicModel:
             given = arm
         elif self.links == "thesis":
             raise InputError(
-                "the thesis' model holds constant products of inertia, which an Arm cannot: give a mapping of "
+                "the thesis's model holds constant products of inertia, which an Arm cannot: give a mapping of "
                 "parameter names to numbers, or use derive() for this arm"
             )
         else:
             given = {name: value for name, value in _from_arm(arm).items() if name in self.symbols}
         for name, value in given.items():
             if name not in self.symbols:
-                raise InputError(f"{name!r} is no parameter of this model; it has {', '.join(self.symbols)}")
+                raise InputError(f"{name!r} is not a parameter of this model; it has {', '.join(self.symbols)}")
             if not np.isfinite(value):
                 raise InputError(f"{name} = {value}: every parameter must be finite")
         missing = [name for name in self.symbols if name not in given and name[0] not in "Ij"]
@@ -138,7 +138,7 @@ def derive(*, links="in-line", general=False):
             about it in the link frame (link 1: z along the column; links 2 and 3: x along the link, z = joint axis).
             "general": centre of mass (x_i, y_i, z_i) anywhere in the link frame, from the joint, and six components
             of inertia per link, I = [[Ixx, -Ixy, -Ixz], [-Ixy, Iyy, -Iyz], [-Ixz, -Iyz, Izz]] (1.104 corrected).
-            "thesis": the thesis' model with its algebra put right: inertias that stay constant in the frame that
+            "thesis": the thesis's model with its algebra put right: inertias that stay constant in the frame that
             turns with joint 1 only, and m1 lc1^2 in M11. No rigid body has them; kept to reproduce its numbers.
         general: the same as links="general".
 

@@ -1,6 +1,6 @@
 """Reference signals, and filters for measured ones.
 
-A reference says where the joints shall be, how fast they move there, and with what acceleration.
+A reference says where the joints have to be, how fast they move there, and with what acceleration.
 Every reference `target` is frozen and answers `target(t)` -> (q, qd, qdd) and `target.sample(t)` -> (n, 3, 3).
 Names are loaded on first use: importing this package costs nothing.
 """

@@ -120,7 +120,7 @@ def check_limits(target, arm, *, max_joint_speed=None, table=0.0, margin=0.03):
     Looked at on 256 points per period of the fastest harmonic. A trigonometric polynomial of degree N can exceed its
     largest value on such a grid by no more than 1/cos(pi/256) - 1 of half its range (Bernstein): that is added.
     """
-    lengths(arm)  # refuses what is no Arm
+    lengths(arm)  # refuses what is not an Arm
     low, high, speed, table = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
     n = _GRID * len(target.a[0])
     t = target.period * np.arange(n) / n

@@ -15,8 +15,8 @@ def low_pass(x, cutoff_hz, rate_hz, *, order=1, kind="causal"):
     kind="zero-phase" runs forward and backward over the finished record: no lag, double the order, not for a loop.
 
     Args: x: (n,) or (n, k), time first; cutoff_hz: Hz, below rate_hz/2; rate_hz: samples per s; order: 1..8.
-    Returns: array like x. Raises InputError for a cut-off at or above half the rate (the thesis' 300 Hz at 100 Hz), for
-    numbers that are not finite, and for records too short to be run backward.
+    Returns: array like x. Raises InputError for a cut-off at or above half the rate (the thesis's 300 Hz at 100 Hz),
+    for numbers that are not finite, and for records too short to be run backward.
 
     >>> from ir50p_lab.signals import low_pass
     >>> low_pass([0, 1, 1, 1], cutoff_hz=3, rate_hz=100).round(3)

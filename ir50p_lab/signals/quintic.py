@@ -42,7 +42,7 @@ def quintic(q0, q1, *, duration):
 
     q = q0 + (q1 - q0)(10 s^3 - 15 s^4 + 6 s^5),  s = t/duration
 
-    The largest velocity is 15/8 |q1 - q0|/duration, half way; the largest acceleration
+    The largest velocity is 15/8 |q1 - q0|/duration, halfway; the largest acceleration
     10/sqrt(3) |q1 - q0|/duration^2. Before t = 0 it rests at q0, after the end at q1.
 
     Args: q0, q1: (3,) rad (may be equal); duration: s, > 0.

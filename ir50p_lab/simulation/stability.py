@@ -20,7 +20,7 @@ def looks_unstable(t, r, q, u, limit, *, follows=True):
       was given: nobody asked the arm to be anywhere).
 
     Args: t (n,) s; r (n, 3, 3) reference; q (n, 3) rad; u (n, 3) applied command, and its limit (3,), infinite where
-        none is known. All else finite.
+        none is known. Everything else finite.
     """
     if len(t) < _FEW:
         return ""

@@ -34,7 +34,7 @@ def sweep(run, cases, *, executor=None, progress=True, save_to=None):
 
     Returns: SweepResult. A case that raises becomes a Failure and does not stop the others; it is tried again on the
     next call.
-    Raises: InputError if `save_to` holds something else than a sweep, or a result cannot be written as JSON.
+    Raises: InputError if `save_to` holds something other than a sweep, or a result cannot be written as JSON.
     """
     from tqdm.auto import tqdm
 

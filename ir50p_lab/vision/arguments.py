@@ -30,7 +30,7 @@ def rigid(name, T):
     good = T.shape == (4, 4) and np.isfinite(T).all() and np.array_equal(T[3], [0, 0, 0, 1])
     if not good or np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max() > 1e-6 or np.linalg.det(T[:3, :3]) < 0:
         raise InputError(
-            f"{name} is no rigid transform: give (4, 4) with a rotation, a translation in m and 0 0 0 1 below (for "
+            f"{name} is not a rigid transform: give (4, 4) with a rotation, a translation in m and 0 0 0 1 below (for "
             "points in rows, as MATLAB has them, give the transpose)"
         )
     return T

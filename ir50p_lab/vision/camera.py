@@ -105,6 +105,6 @@ def open_camera(source=None, *, size=(640, 480)):
 
 
 def _usual():
-    """What is opened if nobody says: in a notebook the page's camera, for its kernel may run where none is."""
+    """What is opened by default: in a notebook the page's camera, because its kernel may run where there is none."""
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     return "page" if IN_BROWSER or hasattr(shell, "kernel") else 0

@@ -28,7 +28,7 @@ def check_image(image, name="image"):
         raise ImageError(f"{name} is {what}: give an array (height, width, 3); load_image reads files")
     if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8 or image.size == 0:
         grey = image.ndim == 2 or image.shape[2:] == (1,)
-        kind = "has one channel, no colour to look for" if grey else "is no colour picture"
+        kind = "has one channel, no colour to look for" if grey else "is not a colour picture"
         raise ImageError(
             f"{name} {kind} ({image.dtype} numbers of shape {image.shape}): give bytes 0..255 (uint8), (height, width, "
             "3), red green blue. Drop a fourth channel, image[..., :3]; scale 0..1, (255 * image).astype('uint8')"
@@ -60,7 +60,7 @@ def load_image(path, *, allow_grey=False):
             image = np.array(ImageOps.exif_transpose(picture).convert("RGB"))
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise ImageError(
-            f"{path} is no picture that can be read, cut off or damaged ({error}): save it as JPEG or PNG (iPhone: "
+            f"{path} cannot be read as a picture, is cut off or damaged ({error}): save it as JPEG or PNG (iPhone: "
             "Settings, Camera, Formats, 'Most Compatible')"
         ) from None
     if deep:
@@ -85,7 +85,7 @@ def save_image(path, image, *, rendered=False, quality=95):
     """Write a picture (h, w, 3) uint8, red green blue, as the suffix of `path` says (.png, .jpg, ...).
 
     rendered: put the mark into the file (PNG and JPEG only) that `is_rendered` finds. quality: of JPEG.
-    Raises ImageError for what is no picture, a suffix that cannot be marked, or a place that cannot be written.
+    Raises ImageError for what is not a picture, a suffix that cannot be marked, or a place that cannot be written.
     """
     if rendered and Path(path).suffix.lower() not in (".png", ".jpg", ".jpeg"):
         raise ImageError("only PNG and JPEG files can say that they are rendered: choose .png or .jpg")

@@ -105,6 +105,6 @@ class PageCamera(Camera):
         display(Image(file.getvalue(), alt=f"A picture of {self.name}"))
 
     def close(self):
-        """Put the camera off; no picture of it stays."""
+        """Switch the camera off; no picture of it stays."""
         self.each()
         self._live.send({"start": False})

@@ -30,7 +30,7 @@ class Pinhole:
         distortion: k1, k2, p1, p2, k3 in the order of OpenCV; 0, 2, 4 or 5 numbers, the rest is zero.
         size: (width, height) of the picture, pixels.
 
-    Raises InputError for a K that is no intrinsic matrix, a wrong number of coefficients, or a size below 1.
+    Raises InputError for a K that is not an intrinsic matrix, a wrong number of coefficients, or a size below 1.
 
     >>> from ir50p_lab.vision import Pinhole
     >>> Pinhole.simple(700).rays([319.5, 239.5])
@@ -136,7 +136,7 @@ class Pinhole:
     def straighten(self, image):
         """The picture (h, w, 3) without distortion: what the same K sees through a lens that does not bend.
 
-        Raises ImageError for what is no picture, CalibrationError for one of another size.
+        Raises ImageError for what is not a picture, CalibrationError for one of another size.
         """
         import cv2
 
@@ -168,7 +168,7 @@ def _check_K(K):
     good = K.shape == (3, 3) and np.isfinite(K).all() and not np.tril(K, -1).any() and (np.diag(K) > 0).all()
     if not good or K[2, 2] != 1:
         raise InputError(
-            f"K = {K.tolist()} is no intrinsic matrix: give the finite 3x3 matrix [[fx, skew, cx], [0, fy, cy], "
+            f"K = {K.tolist()} is not an intrinsic matrix: give the finite 3x3 matrix [[fx, skew, cx], [0, fy, cy], "
             "[0, 0, 1]], fx, fy > 0 (MATLAB prints it transposed: K.T)"
         )
     return K

@@ -27,7 +27,7 @@ class TablePlane:
         y down).
 
     Attributes: camera; T_cam_table; rms: px, of the board it was made from, or None; centre: (3,) m, of the lens.
-    Raises InputError if T_cam_table is no rigid transform, a shape is wrong, or the camera lies below the table.
+    Raises InputError if T_cam_table is not a rigid transform, a shape is wrong, or the camera lies below the table.
     """
 
     def __init__(self, camera, T_cam_table, rms=None):

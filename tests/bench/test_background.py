@@ -1,6 +1,5 @@
 """The loop in the background: gains, set points and stops reach it; nothing that dies leaves the drive on."""
 
-import gc
 import os
 import signal
 import subprocess
@@ -13,12 +12,13 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from file_bench import FileBench, lines
+from refusals import refused
 from until import until
 
 from ir50p_lab.bench import SimulatedBench, background, rest
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import BenchError, InputError, PortError
+from ir50p_lab.errors import BenchError, PortError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 
@@ -117,8 +117,7 @@ def test_it_holds_the_measured_pose_and_leaves_the_caller_free(holding):
 def test_a_loop_in_the_background_has_the_bench(holding):
     bench, run = holding
     for other in (lambda: bench.run(1), lambda: bench.start(pid(), None)):
-        with pytest.raises(BenchError, match=r"stop\(\) or cut\(\)"):
-            other()
+        refused(r"stop\(\) or cut\(\)", other, error=BenchError)
     assert run.alive
 
 
@@ -131,8 +130,7 @@ def test_a_set_point_moves_the_reference_smoothly(holding):
     np.testing.assert_array_equal(r[-1, [0, 2]], start[[0, 2]])
     assert 0 < np.diff(r[:, 1]).max() < 0.8 * 0.05 and np.diff(r[:, 1]).min() >= -1e-3
     for bad, said in (((0, 3.0, 0), "travel is -50 to 110 deg"), ((0, -0.8, -1.0), "below the table")):
-        with pytest.raises(InputError, match=said):
-            run.set_point(bad)
+        refused(said, run.set_point, bad)
 
 
 def test_the_reference_is_led_in_from_where_the_arm_stands(led_in):
@@ -167,8 +165,7 @@ def test_after_it_the_bench_is_here_again(bench):
         assert periods[0] == 0 and (np.diff(periods) > 0).all()
     assert periods[-1] <= 4  # nor too late
     for _ in bench.run(0.05):
-        with pytest.raises(BenchError, match="in a cell"):
-            bench.start(pid(), None)
+        refused("in a cell", bench.start, pid(), None, error=BenchError)
     bench.abort()
 
 
@@ -180,8 +177,7 @@ def test_gains_change_without_a_bump_and_not_those_of_the_callers_controller(ben
     np.testing.assert_array_equal(run.gains["kd"], (20, 20, 20))
     count = run.statistics().cycles
     until(lambda: run.statistics().cycles > count + 10)
-    with pytest.raises(InputError, match=r"ki of joint 1 = -1.*>= 0"):
-        run.set_gains(ki=-1)
+    refused(r"ki of joint 1 = -1.*>= 0", run.set_gains, ki=-1)
     run.cut()
     assert not run.alive and run.phase == "ended" and run.join() and run.error is None
     np.testing.assert_array_equal(mine.kp, GAINS["kp"])
@@ -203,25 +199,21 @@ def test_a_cut_by_a_pause_is_said_with_its_time(bench):
 
 def test_an_error_of_the_controller_cuts_and_is_raised_by_join(bench):
     run = bench.start(Failing(ZeroDivisionError("by nothing")), None)
-    with pytest.raises(ZeroDivisionError, match="by nothing"):
-        run.join(10)
+    refused("by nothing", run.join, 10, error=ZeroDivisionError)
     assert isinstance(run.error, ZeroDivisionError) and not run.alive
     assert len(run.recent(10).t) == 4
 
 
 def test_an_error_of_the_reference_before_the_run_drives_nothing(bench):
-    with pytest.raises(InputError):
-        bench.start(pid(), lambda t: (np.full(3, np.nan), np.zeros(3), np.zeros(3)))
-    with pytest.raises(ZeroDivisionError):
-        bench.start(pid(), lambda t: 1 / 0)
+    refused("", bench.start, pid(), lambda t: (np.full(3, np.nan), np.zeros(3), np.zeros(3)))
+    refused("", bench.start, pid(), lambda t: 1 / 0, error=ZeroDivisionError)
     assert list(bench.run(0.05))  # and the bench is still ours
     bench.abort()
 
 
 def test_an_error_of_the_reference_in_the_run_cuts_too(bench):
     run = bench.start(pid(), lambda t: (np.full(3, np.nan if t > 0.05 else 0.1), np.zeros(3), np.zeros(3)))
-    with pytest.raises(InputError):
-        run.join(10)
+    refused("", run.join, 10)
     assert not run.alive
 
 
@@ -231,8 +223,7 @@ def test_an_interrupt_while_it_starts_leaves_nothing_driving(bench, monkeypatch)
 
     monkeypatch.setattr(threading.Event, "wait", lambda event, timeout=None, wait=threading.Event.wait: (
         interrupted() if timeout == background._BEGINS_WITHIN else wait(event, timeout)))  # fmt: skip
-    with pytest.raises(KeyboardInterrupt):
-        bench.start(pid())
+    refused("", bench.start, pid(), error=KeyboardInterrupt)
     until(lambda: not bench.live_run.alive, 60)
 
 
@@ -256,21 +247,17 @@ def test_leaving_the_block_by_an_error_cuts_the_loop(bench):
 
 
 def test_bad_arguments(bench):
-    with pytest.raises(InputError, match="controller"):
-        bench.start(None, None)
-    with pytest.raises(InputError, match="reference"):
-        bench.start(pid(), [1, 2, 3])
+    refused("controller", bench.start, None, None)
+    refused("reference", bench.start, pid(), [1, 2, 3])
     lock = threading.Lock()
 
     def with_a_lock(t):
         assert not lock.locked()
         return np.zeros((3, 3))
 
-    with pytest.raises(InputError, match="cannot be sent"):
-        bench.start(pid(), with_a_lock)
+    refused("cannot be sent", bench.start, pid(), with_a_lock)
     closed = SimulatedBench(IR50P)
-    with pytest.raises(BenchError, match="closed"):
-        closed.start(pid(), None)
+    refused("closed", closed.start, pid(), None, error=BenchError)
 
 
 # ---- in a thread: a simulated arm
@@ -314,14 +301,12 @@ def test_the_loop_is_another_process_with_the_port_and_what_a_notebook_defines(c
         child = [pid for _, pid, words in lines(commands) if words[0] == "drive"]
         assert set(child) == {run._process.pid} != {os.getpid()}
         assert lines(commands)[-1][2] == ["cut"]
-        with pytest.raises(InputError, match="no gains"):
-            run.set_gains(kp=1)
+        refused("no gains", run.set_gains, kp=1)
 
 
 def test_a_port_that_the_child_cannot_open_is_raised_by_start(commands):
     with FileBench(commands, busy=True) as bench:
-        with pytest.raises(PortError, match="busy"):
-            bench.start(pid(), None)
+        refused("busy", bench.start, pid(), None, error=PortError)
         bench.abort()
 
 
@@ -330,8 +315,7 @@ def test_a_killed_loop_is_noticed(commands):
         run = bench.start(pid(), None)
         until(lambda: run.statistics().cycles > 3)
         os.kill(run._process.pid, signal.SIGKILL)
-        with pytest.raises(BenchError, match="has died"):
-            run.join(10)
+        refused("has died", run.join, 10, error=BenchError)
         assert not run.alive
 
 
@@ -345,8 +329,7 @@ def test_the_last_words_of_a_loop_that_dies_are_told(commands):
 
     with FileBench(commands) as bench:
         run = bench.start(Dying(), lambda t: (np.zeros(3),) * 3)
-        with pytest.raises(BenchError, match=r"has died \(exit code 3\).*; it said: x{1482}Segmentation fault$"):
-            run.join(10)
+        refused(r"has died \(exit code 3\).*; it said: x{1482}Segmentation fault$", run.join, 10, error=BenchError)
 
 
 def test_the_last_words_of_a_loop_that_does_not_begin_are_told(commands, monkeypatch):
@@ -391,13 +374,3 @@ def test_the_drive_is_cut_when_the_notebook_dies(commands):
     cut = next(t for t, _, words in lines(commands) if words == ["cut"] and t > killed)
     driven = max(t for t, _, words in lines(commands) if words[0] == "drive")
     assert driven < cut and cut - killed < 0.1
-
-
-def test_a_loop_in_a_thread_does_not_wait_for_what_the_notebook_holds():
-    heap = [[] for _ in range(100_000)]
-    with SimulatedBench(record_to=False) as bench:
-        run = bench.start(pid())
-        until(lambda: run.phase == "running")
-        assert gc.get_freeze_count() > len(heap)
-        run.cut()
-        assert gc.get_freeze_count() == 0

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ir50p_lab.bench import (
     Recording,
@@ -12,7 +13,7 @@ from ir50p_lab.bench import (
     nominal_calibration,
 )
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import InputError, LabError, PortError
+from ir50p_lab.errors import LabError, PortError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 
@@ -42,20 +43,17 @@ CALIBRATED = Recording.from_arrays([0.0], np.zeros((1, 3)), header=nominal_calib
     ids=["calibration", "simulated", "serial", "replay"],
 )
 def test_no_arm(make, rubbish):
-    with pytest.raises(InputError, match=r"give an Arm"):
-        make(rubbish)
+    refused(r"give an Arm", make, rubbish)
 
 
 @pytest.mark.parametrize("rubbish", [None, *RUBBISH[1:]], ids=repr)
 def test_no_recording(rubbish):
-    with pytest.raises(InputError, match=r"give a Recording"):
-        ReplayBench(rubbish)
+    refused(r"give a Recording", ReplayBench, rubbish)
 
 
 @pytest.mark.parametrize("period", [None, "0.01", 0.0, 2.0], ids=repr)
 def test_no_period(period):
-    with pytest.raises(InputError, match=r"period"):
-        SimulatedBench(IR50P, period=period, record_to=False)
+    refused(r"period", SimulatedBench, IR50P, period=period, record_to=False)
 
 
 @pytest.mark.parametrize("rubbish", RUBBISH, ids=repr)
@@ -66,19 +64,13 @@ def test_a_run_refuses(rubbish):
         with pytest.raises(LabError):
             for _ in bench.run(0.02):
                 bench.drive(rubbish)
-        with pytest.raises(LabError):
-            bench.follow(PID(kp=(1, 1, 1), limit_pwm=255), hold([0, 0, 0]), rubbish)
-        with pytest.raises(InputError, match=r"give a controller"):
-            bench.follow(rubbish, hold([0, 0, 0]), 1.0)
-        with pytest.raises(InputError, match=r"give a function of time"):
-            bench.follow(PID(kp=(1, 1, 1), limit_pwm=255), rubbish, 1.0)
-        with pytest.raises(LabError):
-            bench.start(rubbish, hold([0, 0, 0]))
-        with pytest.raises(LabError):
-            bench.start(PID(kp=(1, 1, 1), limit_pwm=255), rubbish)
+        refused("", bench.follow, PID(kp=(1, 1, 1), limit_pwm=255), hold([0, 0, 0]), rubbish, error=LabError)
+        refused(r"give a controller", bench.follow, rubbish, hold([0, 0, 0]), 1.0)
+        refused(r"give a function of time", bench.follow, PID(kp=(1, 1, 1), limit_pwm=255), rubbish, 1.0)
+        refused("", bench.start, rubbish, hold([0, 0, 0]), error=LabError)
+        refused("", bench.start, PID(kp=(1, 1, 1), limit_pwm=255), rubbish, error=LabError)
 
 
 def test_a_misspelt_bench_says_how_to_go_on_without_a_board(monkeypatch):
     monkeypatch.setenv("IR50P_BENCH", "simulatd")
-    with pytest.raises(PortError, match=r"simulatd does not exist.*connect\('simulated'\)"):
-        connect()
+    refused(r"simulatd does not exist.*connect\('simulated'\)", connect, error=PortError)

@@ -80,7 +80,7 @@ def test_a_sound_bench_passes_and_its_report_says_what_it_is(monkeypatch):
         ("motor", 0, "drive", "swap its two motor wires"),
         ("motor", 2, "drive", "swap its two motor wires"),
         ("bridges", 0, "drive", "their two bridges are swapped"),
-        ("unpowered", 0, "drive", "has its motor no supply"),
+        ("unpowered", 0, "drive", "does its motor lack supply"),
         ("pot", 2, "potentiometer", "swap the two ends of its potentiometer"),
         ("stuck", 0, "potentiometer", "is the potentiometer coupled"),
         ("broken", 1, "potentiometer", "broken or shorted wire"),

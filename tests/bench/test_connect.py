@@ -4,12 +4,13 @@ from importlib import import_module
 
 import pytest
 from fake_board import FakeBoard
+from refusals import refused
 
 from ir50p_lab.bench import JointCalibration, SerialBench, SimulatedBench, connect, nominal_calibration
 from ir50p_lab.bench import ports as port_list
 from ir50p_lab.bench.ports import Port
 from ir50p_lab.course.lab_book.results import add
-from ir50p_lab.errors import BoardError, InputError, PortError, RecordingError
+from ir50p_lab.errors import BoardError, PortError, RecordingError
 from ir50p_lab.modelling import IR50P
 
 MEGA = "Arduino Mega 2560"
@@ -156,19 +157,15 @@ def test_a_port(computer, said):
 
 def test_what_is_asked_for_and_fails_raises(computer, capsys):
     computer({"COM3": (MEGA, board(dead=True))})
-    with pytest.raises(BoardError, match="no firmware of ours answers"):
-        connect("COM3")
-    with pytest.raises(PortError, match="COM9 does not exist"):
-        connect("COM9")
-    with pytest.raises(RecordingError, match=r"nowhere\.csv"):
-        connect("replay:nowhere.csv")
+    refused("no firmware of ours answers", connect, "COM3", error=BoardError)
+    refused("COM9 does not exist", connect, "COM9", error=PortError)
+    refused(r"nowhere\.csv", connect, "replay:nowhere.csv", error=RecordingError)
     assert "Bench:" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("port", ["", 7, b"COM3"])
 def test_a_port_that_is_none(port):
-    with pytest.raises(InputError, match="give 'simulated', 'replay:FILE' or the name of a serial port"):
-        connect(port)
+    refused("give 'simulated', 'replay:FILE' or the name of a serial port", connect, port)
 
 
 # ---- what is handed on

@@ -11,13 +11,14 @@ from importlib import import_module
 import numpy as np
 import pytest
 from benches import GAINS, RIGS
+from refusals import refused
 
 from ir50p_lab.bench import Recording, Sample, nominal_calibration, serial_bench
 from ir50p_lab.bench.calibration import JointCalibration
 from ir50p_lab.bench.ports import Port
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import BenchError, InputError
+from ir50p_lab.errors import BenchError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 
@@ -84,13 +85,11 @@ class TestContract:
 
     def test_it_is_opened_by_with_and_closed_after_it(self, rig):
         bench = rig.bench()
-        with pytest.raises(BenchError, match="is closed: open it with"):
-            bench.run(1)
+        refused("is closed: open it with", bench.run, 1, error=BenchError)
         with bench as same:
             assert same is bench
             assert len(list(bench.run(0.05))) == 5
-        with pytest.raises(BenchError, match="is closed"):
-            bench.run(1)
+        refused("is closed", bench.run, 1, error=BenchError)
         assert is_off(rig)
         bench.close()
         bench.abort()  # once more does no harm
@@ -136,8 +135,7 @@ class TestContract:
     @pytest.mark.parametrize("seconds", [0, -1, math.nan, math.inf, "ten", None])
     def test_a_run_needs_a_duration(self, rig, seconds):
         bench = rig.bench().open()
-        with pytest.raises(InputError, match="how long to run"):
-            bench.run(seconds)
+        refused("how long to run", bench.run, seconds)
 
     def test_a_second_run_begins_anew(self, rig):
         bench = rig.bench().open()
@@ -205,19 +203,16 @@ class TestContract:
             if k < 3:
                 bench.drive([60, 60, 60])
             elif k == 3:
-                with pytest.raises(InputError, match="three finite numbers"):
-                    bench.drive(pwm)
+                refused("three finite numbers", bench.drive, pwm)
                 assert is_off(rig)
         assert (bench.recording.u[4:] == 0).all()
 
     def test_drive_outside_a_run_is_refused(self, rig):
         bench = rig.bench().open()
-        with pytest.raises(BenchError, match=r"only inside `for sample in bench.run"):
-            bench.drive([50, 50, 50])
+        refused(r"only inside `for sample in bench.run", bench.drive, [50, 50, 50], error=BenchError)
         for _ in bench.run(0.05):
             bench.drive([50, 50, 50])
-        with pytest.raises(BenchError, match="only inside"):
-            bench.drive([50, 50, 50])
+        refused("only inside", bench.drive, [50, 50, 50], error=BenchError)
         assert is_off(rig)
 
     def test_the_gripper(self, rig):
@@ -271,8 +266,7 @@ class TestContract:
                         signal.raise_signal(signal.SIGINT)
                     raise error
         assert is_off(rig)
-        with pytest.raises(BenchError, match="is closed"):
-            bench.run(1)
+        refused("is closed", bench.run, 1, error=BenchError)
         assert len(bench.recording) >= 5
 
     def test_an_error_leaves_the_arm_where_it_is(self, rig_at):

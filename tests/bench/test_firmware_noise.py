@@ -1,7 +1,5 @@
 """The board's parser on a bad line: the same stream as Python's, the same frames, none false."""
 
-import random
-
 from board_frames import CommandParser
 
 from ir50p_lab.bench.protocol import COMMAND_SIZE, FrameParser
@@ -36,11 +34,3 @@ def test_200_000_bytes_of_noise_and_no_false_frame():
     assert board.resets == 0
     last = Talk(board).stop()
     assert last.bad_frames == python.bad % 65536
-
-
-def test_random_bytes_hold_no_frame():
-    board = VirtualBoard()
-    board.sleep(0.05)
-    assert pour(board, random.Random(8).randbytes(100_000) + bytes(COMMAND_SIZE)) == []
-    assert board.resets == 0
-    assert Talk(board).stop() is not None

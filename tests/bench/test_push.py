@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from faulty_arm import FaultyArm
 from file_bench import FileBench
+from refusals import refused
 
 from ir50p_lab.bench import Recording, SimulatedBench
 from ir50p_lab.bench.runaway import RunawayGuard
 from ir50p_lab.bench.simulated_arm import SimulatedArm
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import BenchError, InputError, RunawayError
+from ir50p_lab.errors import BenchError, RunawayError
 from ir50p_lab.modelling import IR50P, Arm, forward_kinematics, frames
 from ir50p_lab.signals import hold
 
@@ -133,8 +134,7 @@ def test_the_guard_knows_the_hand(force, gains):
 
 def test_untold_it_ends_the_run_as_that_of_a_real_arm_does(monkeypatch):
     monkeypatch.setattr(RunawayGuard, "begin_anew", lambda guard: None)
-    with pytest.raises(RunawayError):
-        pushed((0, 5, 0), end=8.0)
+    refused("", pushed, (0, 5, 0), end=8.0, error=RunawayError)
 
 
 def test_the_guard_looks_again_when_the_hand_has_let_go():
@@ -175,8 +175,7 @@ def test_a_controller_in_the_background_is_pushed(controller):
             run.push(*TIP, (0, 8, 0))
             time.sleep(0.05)
         for wrong in ((0, (0, 0, 0), (0, 0, 1)), (3, (0, 0), (0, 0, 1)), (3, (0, 0, 0), (0, 0, np.nan))):
-            with pytest.raises(InputError):
-                run.push(*wrong)
+            refused("", run.push, *wrong)
         assert run.alive
         assert "with 8.0 N" in run.recording.events[0][1]
         run.cut()
@@ -188,8 +187,7 @@ def test_only_a_simulated_arm_is_pushed_from_here(tmp_path):
     with FileBench(str(tmp_path / "commands.txt"), record_to=False) as bench:
         run = bench.start(PID(**P, limit_pwm=255), None)
         assert run.most_push == 0
-        with pytest.raises(InputError, match="only a simulated arm"):
-            run.push(*TIP, (0, 0, 1))
+        refused("only a simulated arm", run.push, *TIP, (0, 0, 1))
         run.cut()
     with SimulatedBench(IR50P, record_to=False) as bench, pytest.raises(BenchError, match="inside a run"):
         bench.push(*TIP, (0, 0, 1))

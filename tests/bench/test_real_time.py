@@ -11,7 +11,7 @@ import pytest
 from ir50p_lab.bench import SerialBench, connect, serial_bench
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import BoardLostError, PortError
+from ir50p_lab.errors import BoardLostError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import hold
 from tests.emulator.board_process import BoardProcess
@@ -70,12 +70,3 @@ def test_cable_pulled(board):
                 when = time.monotonic()
                 board.process.kill()
     assert time.monotonic() - when < 0.5
-
-
-def test_two_benches_on_one_port(board):
-    bench = bench_of(board).open()
-    with pytest.raises(PortError, match="is busy"):
-        bench_of(board).open()
-    assert list(bench.run(0.1))
-    bench.abort()
-    bench_of(board).open().abort()  # given free

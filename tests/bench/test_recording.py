@@ -9,6 +9,7 @@ import threading
 import matplotlib.image
 import numpy as np
 import pytest
+from refusals import refused
 
 from ir50p_lab.bench import recorder as recorder_module
 from ir50p_lab.bench.base import Sample
@@ -16,7 +17,7 @@ from ir50p_lab.bench.recorder import Recorder
 from ir50p_lab.bench.recording import Recording, RecordingWarning
 from ir50p_lab.bench.recording_file import COLUMNS
 from ir50p_lab.bench.simulated import SimulatedBench
-from ir50p_lab.errors import InputError, RecordingError
+from ir50p_lab.errors import RecordingError
 from ir50p_lab.modelling import IR50P
 
 HEAD = {"kind": "simulated", "bench": "simulated IR50P", "simulated": "true", "period_s": "0.01"}
@@ -124,8 +125,8 @@ def test_default_folder_and_the_environment_variable(tmp_path, monkeypatch):
 
 def test_a_folder_that_cannot_be_is_said_with_the_remedy(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(RecordingError, match=r"cannot record in .*file.*record_to=.*IR50P_HOME"):
-        Recorder(HEAD, tmp_path / "file" / "below")
+    said = r"cannot record in .*file.*record_to=.*IR50P_HOME"
+    refused(said, Recorder, HEAD, tmp_path / "file" / "below", error=RecordingError)
 
 
 # ---- a full disk
@@ -150,8 +151,7 @@ def test_a_full_disk_loses_nothing_that_was_recorded(tmp_path, monkeypatch, room
     recorder = Recorder(HEAD, tmp_path)
     fill(recorder, 3)
     full_after(monkeypatch, room)
-    with pytest.raises(RecordingError, match=r"No space left.*safe.*Make room"):
-        fill(recorder, 100, first=3)
+    refused(r"No space left.*safe.*Make room", fill, recorder, 100, first=3, error=RecordingError)
     loaded = Recording.load(recorder.path)  # no warning: the file ends with a whole line
     n = len(loaded)
     assert n == len(recorder.recording) - 1 and n > 3
@@ -160,15 +160,13 @@ def test_a_full_disk_loses_nothing_that_was_recorded(tmp_path, monkeypatch, room
 
 def test_no_room_even_for_the_head(tmp_path, monkeypatch):
     full_after(monkeypatch, 10)
-    with pytest.raises(RecordingError, match="No space left"):
-        Recorder(HEAD, tmp_path)
+    refused("No space left", Recorder, HEAD, tmp_path, error=RecordingError)
 
 
 def test_a_reference_that_is_none_is_refused():
     recorder = Recorder(HEAD, False)
     for wrong in (np.zeros((3, 3)), [1.0, 2.0], 5.0, "abc"):
-        with pytest.raises(InputError, match="reference"):
-            fill(recorder, 1, reference=wrong)
+        refused("reference", fill, recorder, 1, reference=wrong)
     assert len(recorder.recording) == 0
 
 
@@ -231,31 +229,10 @@ def test_what_a_spreadsheet_with_decimal_commas_saved_again(tmp_path, separator,
     assert loaded.simulated and loaded.period == run.period
 
 
-@pytest.mark.parametrize(
-    ("was", "became"), [("0,500000", "1.500.000"), ("0,500000", "01. Mai"), ("0,500000", "0,5 0,2")]
-)
-def test_what_a_spreadsheet_spoilt_is_named(tmp_path, was, became):
-    text = ours(*(f"{k / 100:.2f},0.500000,{ROW.split(',', 1)[1]}" for k in range(5)))
-    spoilt = saved_again(text, ";", "utf-8").decode().replace(was, became, 1)
-    with pytest.raises(RecordingError, match=r"line 4: .* is no number; repair"):
-        Recording.load(file_of(tmp_path, spoilt))
-
-
 def test_decimal_commas_beside_commas_stand_in_quotes(tmp_path):
     run = fill(Recorder(HEAD, tmp_path), 30)
     text = run.save(tmp_path / "run.csv").read_text(encoding="utf-8")
     same(run, Recording.load(file_of(tmp_path, saved_again(text, ",", "utf-8", '"'))))
-
-
-def test_a_cell_too_narrow_to_be_shown_is_no_line_of_the_head(tmp_path):
-    with pytest.raises(RecordingError, match="'########' is no number; repair"):
-        Recording.load(file_of(tmp_path, ours(f"0,0.5,{ROW.split(',', 1)[1]}", f"########,{ROW}")))
-
-
-def test_a_point_beside_decimal_commas_is_one_of_thousands(tmp_path):
-    spoilt = saved_again(ours(f"0,{ROW}", f"0.01,{ROW}"), ";", "utf-8").decode().replace("0,5;", "1.234;", 1)
-    with pytest.raises(RecordingError, match=r"'1.234' beside decimal commas is no number; repair"):
-        Recording.load(file_of(tmp_path, spoilt))
 
 
 def test_a_file_of_utf_16_that_was_cut_within_a_letter_is_read_as_far_as_it_goes(tmp_path):
@@ -269,10 +246,9 @@ def test_times_in_another_unit_than_the_head_says_are_refused(tmp_path, unit):
     for begin in (0.0, 7.0):
         rows = [f"{unit * (begin + k / 100):.7f},{ROW}" for k in range(20)]
         head = "# period_s: 0.01\n" + ",".join(COLUMNS) + "\n"
-        with pytest.raises(
-            RecordingError, match=rf"period_s: 0.01 in its head: .* divide it by {re.escape(f'{unit:.4g}')},"
-        ):
-            Recording.load(file_of(tmp_path, head + "\n".join(rows) + "\n"))
+        said = rf"period_s: 0.01 in its head: .* divide it by {re.escape(f'{unit:.4g}')},"
+        path = file_of(tmp_path, head + "\n".join(rows) + "\n")
+        refused(said, Recording.load, path, error=RecordingError)
 
 
 def test_what_is_not_known_is_an_empty_cell(tmp_path):
@@ -289,8 +265,7 @@ def test_letters_beyond_ascii(tmp_path):
 
 
 def test_arrays_that_do_not_fit_are_refused():
-    with pytest.raises(InputError, match="of one length"):
-        Recording.from_arrays(np.arange(3), np.zeros((4, 3)))
+    refused("of one length", Recording.from_arrays, np.arange(3), np.zeros((4, 3)))
 
 
 @pytest.mark.parametrize(
@@ -301,13 +276,21 @@ def test_arrays_that_do_not_fit_are_refused():
     ],
 )
 def test_arrays_that_cannot_be_are_refused(t, q, u, words):
-    with pytest.raises(RecordingError, match=words):
-        Recording.from_arrays(t, q, u=u)
+    refused(words, Recording.from_arrays, t, q, u=u, error=RecordingError)
+
+
+def spoilt(cell):
+    """A file as a spreadsheet with decimal commas saves it, an angle of its first row changed."""
+    text = ours(*(f"{k / 100:.2f},0.500000,{ROW.split(',', 1)[1]}" for k in range(5)))
+    return saved_again(text, ";", "utf-8").decode().replace("0,500000", cell, 1)
 
 
 WRONG = [
+    *((spoilt(cell), r"line 4: .* is not a number; repair") for cell in ("1.500.000", "01. Mai", "0,5 0,2")),
+    (spoilt("1.234"), r"'1.234' beside decimal commas is not a number; repair"),
+    (ours(f"0,0.5,{ROW.split(',', 1)[1]}", f"########,{ROW}"), "'########' is not a number; repair"),
     (ours(f"0.00,{ROW}", "0.01,0.5,0.2", f"0.02,{ROW}"), r"line 5: 3 values for 15 columns .*delete that line"),
-    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "6o0"), f"0.02,{ROW}"), r"line 5: '6o0' is no number"),
+    (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "6o0"), f"0.02,{ROW}"), r"line 5: '6o0' is not a number"),
     (ours(f"0.00,{ROW}", f"0.02,{ROW}", f"0.01,{ROW}"), r"line 6: t = 0.01 s is not later"),
     (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("0.2", "")), r"line 5: t or an angle is missing"),
     (ours(f"0.00,{ROW}", f"0.01,{ROW}".replace("600", "inf")), r"line 5: a value is infinite"),
@@ -322,19 +305,13 @@ WRONG = [
 
 @pytest.mark.parametrize(("text", "message"), WRONG)
 def test_what_is_wrong_is_named_with_file_and_line(tmp_path, text, message):
-    with pytest.raises(RecordingError, match=message) as caught:
-        Recording.load(file_of(tmp_path, text))
-    assert "other.csv" in str(caught.value)
+    assert "other.csv" in refused(message, Recording.load, file_of(tmp_path, text), error=RecordingError)
 
 
-def test_a_place_where_nothing_can_be_written(tmp_path):
-    with pytest.raises(RecordingError, match=r"cannot write .*nowhere.*give a file in a folder of yours"):
-        step_answer().save(tmp_path / "nowhere" / "run.csv")
-
-
-def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(RecordingError, match=r"nothing.csv.*check the path"):
-        Recording.load(tmp_path / "nothing.csv")
+def test_places_where_nothing_is_or_can_be_written(tmp_path):
+    refused(r"nothing.csv.*check the path", Recording.load, tmp_path / "nothing.csv", error=RecordingError)
+    said = r"cannot write .*nowhere.*give a file in a folder of yours"
+    refused(said, step_answer().save, tmp_path / "nowhere" / "run.csv", error=RecordingError)
 
 
 # ---- what it says
@@ -373,8 +350,7 @@ def test_plot_without_reference_without_u_without_samples():
     assert figure.axes[0].get_title() == "joint 1" and "unknown origin" in figure.get_suptitle()
     assert len(figure.axes[0].get_lines()) == 1
     Recording.from_arrays([0.0], np.zeros((1, 3))).plot()
-    with pytest.raises(RecordingError, match="no sample"):
-        Recording.from_arrays([], np.zeros((0, 3))).plot()
+    refused("no sample", Recording.from_arrays([], np.zeros((0, 3))).plot, error=RecordingError)
 
 
 def test_events_in_the_middle_of_a_run_survive(tmp_path):

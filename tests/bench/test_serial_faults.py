@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 import serial
 from fake_board import ANSWER, FakeBoard
+from refusals import refused
 
 from ir50p_lab.bench import SerialBench, nominal_calibration, ports, protocol, serial_bench
-from ir50p_lab.errors import BoardError, BoardLostError, InputError, PauseError, PortError, RunawayError
+from ir50p_lab.errors import BoardError, BoardLostError, PauseError, PortError
 from ir50p_lab.modelling import IR50P
 
 CALIBRATION = nominal_calibration(IR50P)
@@ -72,8 +73,7 @@ def test_port_that_does_not_open(monkeypatch, platform, number, text, expected):
 
 def test_file_that_is_no_port(tmp_path):
     (tmp_path / "file").write_text("text")
-    with pytest.raises(PortError, match="is it a serial port"):
-        SerialBench(tmp_path / "file", arm=IR50P).open()
+    refused("is it a serial port", SerialBench(tmp_path / "file", arm=IR50P).open, error=PortError)
 
 
 @pytest.fixture
@@ -88,8 +88,7 @@ def pty():
 
 def test_port_that_another_program_holds(pty):
     first = ports.open_port(pty[1], protocol.BAUD)
-    with pytest.raises(PortError, match="is busy: another program holds it"):
-        SerialBench(pty[1], arm=IR50P).open()
+    refused("is busy: another program holds it", SerialBench(pty[1], arm=IR50P).open, error=PortError)
     first.close()
 
 
@@ -97,15 +96,13 @@ def test_a_port_where_nothing_answers_is_given_free(pty, monkeypatch):
     monkeypatch.setattr(serial_bench, "HANDSHAKE", 0.1)
     monkeypatch.setattr(serial_bench, "BOOT_LOADER", 0.0)
     for _ in range(2):  # the second time, too, nothing answers: the port was not left open
-        with pytest.raises(BoardError, match="no firmware of ours answers"):
-            SerialBench(pty[1], arm=IR50P).open()
+        refused("no firmware of ours answers", SerialBench(pty[1], arm=IR50P).open, error=BoardError)
     assert os.read(pty[0], 1000)[2] == protocol.HELLO
 
 
 @pytest.mark.parametrize("port", [None, "", 3])
 def test_no_port(port):
-    with pytest.raises(InputError, match="give the name of a serial port"):
-        SerialBench(port, arm=IR50P)
+    refused("give the name of a serial port", SerialBench, port, arm=IR50P)
 
 
 # ---- what answers is not our board
@@ -114,8 +111,8 @@ def test_no_port(port):
 def test_silence(board):
     board.dead = True
     begun = board.t
-    with pytest.raises(BoardError, match=r"fake: no firmware of ours answers. Is it a Mega 2560\?.*bench/firmware"):
-        bench_of(board).open()
+    said = r"fake: no firmware of ours answers. Is it a Mega 2560\?.*bench/firmware"
+    refused(said, bench_of(board).open, error=BoardError)
     assert board.t - begun < 1.1 * serial_bench.HANDSHAKE
     assert board.closed
 
@@ -132,8 +129,7 @@ def test_silence(board):
 def test_another_device(board, bytes_sent):
     """It talks, whatever we say; to each of our frames the same."""
     board.on_command = lambda n, data: board.say(bytes_sent) or b""
-    with pytest.raises(BoardError, match="no firmware of ours answers"):
-        bench_of(board).open()
+    refused("no firmware of ours answers", bench_of(board).open, error=BoardError)
     assert board.closed
 
 
@@ -159,8 +155,7 @@ def test_another_firmware(board, identity, expected):
 def test_an_id_is_given_once_and_known_afterwards(board):
     bench = bench_of(board)
     assert bench.bench_id is None
-    with pytest.raises(BoardError, match="open it"):
-        bench.give_id()
+    refused("open it", bench.give_id, error=BoardError)
     with bench:
         assert bench.bench_id is None
         given = bench.give_id()
@@ -280,8 +275,7 @@ def test_an_answer_still_on_its_way_when_a_run_begins_is_no_damaged_one(board, l
 
 def test_a_cable_pulled_before_the_hello(board):
     board.unplugged = True
-    with pytest.raises(BoardError, match="went away while we said hello"):
-        bench_of(board).open()
+    refused("went away while we said hello", bench_of(board).open, error=BoardError)
     assert board.closed
 
 
@@ -387,8 +381,7 @@ def test_a_program_that_was_stopped_as_it_wrote_lost_no_board(board, monkeypatch
         return size
 
     monkeypatch.setattr(board, "write", stopped)
-    with pytest.raises(PauseError, match=r"no command for 2\.0 s"):
-        run(board, 5.0, (30, 0, 0))
+    refused(r"no command for 2\.0 s", run, board, 5.0, (30, 0, 0), error=PauseError)
     assert board.trips == 1 and (board.pwm == 0).all()
 
 
@@ -405,8 +398,7 @@ def test_a_command_that_did_not_get_out_in_time_is_not_driven_later(board, monke
         return write(data)
 
     monkeypatch.setattr(board, "write", late)
-    with pytest.raises(PauseError):
-        run(board, 0.5, (200, 0, 0))
+    refused("", run, board, 0.5, (200, 0, 0), error=PauseError)
     assert kinds.count(protocol.DRIVE) == 1 and kinds[kinds.index(protocol.DRIVE) + 1] == protocol.STOP
 
 
@@ -470,33 +462,6 @@ def test_broken_wire_of_a_potentiometer(board, joint, reads):
 
 
 # ---- cutting
-
-
-@pytest.mark.parametrize("dead", [False, True])
-@pytest.mark.parametrize("fault", ["command", "tip", "wire"])
-def test_no_error_says_that_the_drive_is_off_before_the_board_has(board, fault, dead):
-    """The line dies after an answer, before the cut: nobody knows, and the board cuts 0.1 s after the last command."""
-    if fault == "tip":
-        board.q = np.array([0.0, -0.8, 0.0])
-
-    late = []
-
-    def on_answer(n, data):
-        late.extend([n] * int(board.q[0] > 9))  # those after the wire broke: to a command, then with the measurement
-        board.dead = dead and len(late) > 1
-        return data
-
-    board.on_answer = on_answer
-    with pytest.raises((BoardError, InputError, RunawayError)) as caught, bench_of(board) as bench:
-        for k, _ in enumerate(bench.run(1.0)):
-            if k == 5 and fault == "wire":
-                board.q[0] = 10.0  # no potentiometer reads that
-            board.dead = dead and fault != "wire" and k == (0 if fault == "tip" else 5)
-            bench.drive((np.nan, 0, 0) if fault == "command" and k == 5 else (50, -50, 50))
-    assert ("the board has not confirmed the cut: it brakes by itself within 0.1 s" in str(caught.value)) == dead
-    assert any(said in str(caught.value) for said in ("drive has been cut", "drive is off")) != dead
-    board.sleep(0.1)
-    assert not board.pwm.any()
 
 
 @pytest.mark.parametrize("state", ["well", "dead", "unplugged", "noisy", "closed"])

@@ -5,11 +5,11 @@ import pickle
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ir50p_lab.bench import ArmInstance
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.bench.simulated_arm import SimulatedArm
-from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P, IR50P_WEAK_SHOULDER, Arm, gravity
 from ir50p_lab.simulation import simulate
 
@@ -141,12 +141,9 @@ def test_noise_is_the_same_however_it_is_taken():
 
 
 def test_where_it_cannot_stand():
-    with pytest.raises(InputError, match="q0 of joint 1 is 3"):
-        SimulatedArm(IR50P, q0=(3, 0, 0))
-    with pytest.raises(InputError, match="table"):
-        SimulatedArm(IR50P, q0=(0, -0.8, -1.0))
-    with pytest.raises(InputError, match="shape"):
-        SimulatedArm(IR50P, q0=(0, 0))
+    refused("q0 of joint 1 is 3", SimulatedArm, IR50P, q0=(3, 0, 0))
+    refused("table", SimulatedArm, IR50P, q0=(0, -0.8, -1.0))
+    refused("shape", SimulatedArm, IR50P, q0=(0, 0))
 
 
 def test_an_arm_that_cannot_stand_at_zero_starts_at_rest():

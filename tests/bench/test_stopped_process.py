@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 import pytest
+from until import until
 
 from ir50p_lab.bench import Recording, SerialBench
 from ir50p_lab.errors import PauseError, PortError
@@ -33,6 +34,24 @@ NINE_LINES = """
     except Exception as error:
         print("ended:", type(error).__name__, flush=True)
     input()  # the bench stays open: nothing but the stop keeps the drive off
+"""
+
+
+IN_BACKGROUND = """
+    import time
+    import numpy as np
+    from ir50p_lab.bench import SerialBench
+    from ir50p_lab.modelling import IR50P
+
+    class Push:
+        def step(self, t, measured, reference):
+            return np.array([{push}, 0, 0])
+
+    run = SerialBench({port!r}, arm=IR50P, record_to={folder!r}).open().start(Push(), None)
+    while run.statistics().cycles < 30:
+        time.sleep(0.01)
+    print("drives:", run._process.pid, flush=True)
+    input()
 """
 
 
@@ -79,9 +98,9 @@ def assert_recorded(recording):
 
 
 @contextlib.contextmanager
-def cell_that_drives(board, folder):
+def cell_that_drives(board, folder, code=NINE_LINES):
     """The process of a notebook whose cell drives."""
-    code = textwrap.dedent(NINE_LINES.format(port=board.port, folder=str(folder), push=PUSH))
+    code = textwrap.dedent(code.format(port=board.port, folder=str(folder), push=PUSH))
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
     with subprocess.Popen([sys.executable, "-c", code], env=environment, **pipes) as cell:
@@ -106,6 +125,15 @@ def test_a_kernel_killed_in_the_cell_leaves_the_drive_on_for_no_more_than_110_ms
     with cell_that_drives(board, tmp_path) as cell:
         said(cell, "drives: ")
         cell.kill()
+        assert board.cut_after_last_command() < 0.110
+
+
+@pytest.mark.parametrize("victim", ["notebook", "loop"])
+def test_a_loop_in_the_background_is_cut_when_it_or_its_notebook_is_killed(board, tmp_path, victim):
+    with cell_that_drives(board, tmp_path, IN_BACKGROUND) as cell:
+        loop = int(said(cell, "drives: "))
+        until(lambda: any(board.changes()[-1].pins.pwm))
+        os.kill(cell.pid if victim == "notebook" else loop, signal.SIGKILL)
         assert board.cut_after_last_command() < 0.110
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import ComputedTorque
 from ir50p_lab.course.torque.views import follow, naive_model, rms, thesis_pid, training_run
 from ir50p_lab.errors import InputError
@@ -54,12 +53,3 @@ def test_the_naive_model_fails_because_its_inertia_is_negative(unit):
     mended[:, inertial] = model.theta[:, inertial]
     law = ComputedTorque(mended, **TABLES_4_5, limit_pwm=255)
     assert rms(follow(IR50P, law, SWING, 15, seed=seed), SWING).max() < 0.5 * error
-
-
-def test_gains_and_model_stand_in_the_recording(unit, tmp_path):
-    seed, _, model = unit
-    with SimulatedBench(IR50P, seed=seed, q0=SWING(0.0)[0], record_to=tmp_path) as bench:
-        head = bench.follow(ComputedTorque(model, **TABLES_4_5), SWING, 0.2).header
-    assert head["controller"] == "ComputedTorque" and head["kp"] == "25 9 49" and head["model_unit"] == "PWM"
-    row = [float(x) for x in head["model_theta_2"].split()]
-    np.testing.assert_allclose(row, model.theta[1], rtol=1e-5, atol=1e-12)

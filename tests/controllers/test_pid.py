@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ir50p_lab.controllers import PID, ContinuousPID
-from ir50p_lab.errors import InputError
 
 ZERO = np.zeros(3)
 
@@ -15,23 +15,6 @@ def hold(*q):
 
 def run(pid, angles, target=(0.0, 0.0, 0.0), start=0.0, period=0.01):
     return np.array([pid.step(start + k * period, q, hold(*target)) for k, q in enumerate(np.atleast_2d(angles))])
-
-
-def test_proportional_part():
-    u = PID(kp=(2, 3, 4)).step(0.0, [0.1, 0.2, 0.3], hold(1, 1, 1))
-    np.testing.assert_allclose(u, [2 * 0.9, 3 * 0.8, 4 * 0.7], rtol=1e-14)
-
-
-def test_integral_part_sums_the_error():
-    pid = PID(kp=(0, 0, 0), ki=(5, 5, 5))
-    u = run(pid, np.zeros((100, 3)), target=(1, -1, 0.5))
-    np.testing.assert_allclose(u[-1], 5 * 100 * 0.01 * np.array([1, -1, 0.5]), rtol=1e-12)
-
-
-def test_derivative_part_of_a_ramp_is_its_slope():
-    pid = PID(kp=(0, 0, 0), kd=(2, 2, 2), filter_hz=5)
-    u = run(pid, 0.3 * 0.01 * np.arange(200)[:, None] * np.ones(3))
-    np.testing.assert_allclose(u[-1], -2 * 0.3, rtol=1e-9)
 
 
 def test_velocity_filter_is_the_first_order_low_pass_it_says():
@@ -50,8 +33,7 @@ def test_no_position_filter_is_the_default_to_the_last_bit():
     np.testing.assert_array_equal(run(PID(**gains, position_filter_hz=np.inf), q), plain)
     np.testing.assert_array_equal(run(PID(**gains, position_filter_hz=None), q), plain)
     for bad in (0, -1, np.nan):
-        with pytest.raises(InputError, match="position_filter_hz"):
-            PID(kp=(1, 1, 1), position_filter_hz=bad)
+        refused("position_filter_hz", PID, kp=(1, 1, 1), position_filter_hz=bad)
 
 
 def test_no_derivative_kick_on_the_measurement_and_one_on_the_error():
@@ -140,10 +122,7 @@ def test_after_a_long_pause_the_integral_takes_ten_periods_at_most_and_time_neve
     ],
 )
 def test_bad_input_gets_a_sentence(make, words):
-    with pytest.raises(InputError) as caught:
-        make()
-    for word in words:
-        assert word in str(caught.value)
+    refused(words, make)
 
 
 def test_header_says_gains_and_filters():
@@ -166,5 +145,4 @@ def test_time_that_runs_backwards_is_said():
         pid.step(4.99, ZERO, hold(0, 0, 0))
     pid.reset()
     pid.step(0.0, ZERO, hold(0, 0, 0))  # another run: no word
-    with pytest.raises(InputError, match="at t = nan s"):
-        pid.step(np.nan, ZERO, hold(0, 0, 0))
+    refused("at t = nan s", pid.step, np.nan, ZERO, hold(0, 0, 0))

@@ -4,8 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
+from refusals import refused
 
-from ir50p_lab.errors import IdentificationError, InputError
+from ir50p_lab.errors import IdentificationError
 from ir50p_lab.identification import load_excitations, optimise_excitation, regressor
 from ir50p_lab.identification.excitation import regressor_condition
 from ir50p_lab.modelling import IR50P, Arm, forward_kinematics
@@ -76,10 +77,8 @@ def test_condition_of_a_motion_that_says_nothing():
 
 def test_impossible_limits():
     low = dataclasses.replace(IR50P, q_min=(-1, -1.1, -0.2), q_max=(1, -0.8, 0.2))
-    with pytest.raises(IdentificationError, match="no motion was found inside the limits"):
-        optimise_excitation(low, **QUICK)
-    with pytest.raises(IdentificationError, match="lower the table"):
-        optimise_excitation(IR50P, table=1.0, **QUICK)
+    refused("no motion was found inside the limits", optimise_excitation, low, **QUICK, error=IdentificationError)
+    refused("lower the table", optimise_excitation, IR50P, table=1.0, **QUICK, error=IdentificationError)
 
 
 @pytest.mark.parametrize(
@@ -96,5 +95,4 @@ def test_impossible_limits():
     ],
 )
 def test_bad_arguments(arm, options, words):
-    with pytest.raises(InputError, match=words):
-        optimise_excitation(arm, **{"progress": False, **options})
+    refused(words, optimise_excitation, arm, **{"progress": False, **options})

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ir50p_lab.controllers import PID
 from ir50p_lab.errors import IdentificationError, SuspiciousAngleWarning
@@ -88,8 +89,7 @@ def spoilt(record, **changes):
 def test_a_constant_joint_is_refused(good):
     q = good.q.copy()
     q[:, 1] = 2.0
-    with pytest.raises(IdentificationError, match="joint 2: q is constant"):
-        identify(spoilt(good, q=q))
+    refused("joint 2: q is constant", identify, spoilt(good, q=q), error=IdentificationError)
 
 
 @pytest.mark.parametrize("share", [0.5, 0.9])
@@ -97,8 +97,7 @@ def test_a_clipped_angle_is_refused(good, share):
     q = good.q.copy()
     top = q[:, 2].min() + share * np.ptp(q[:, 2])
     q[:, 2] = np.minimum(q[:, 2], top)
-    with pytest.raises(IdentificationError, match="joint 3: q was clipped"):
-        identify(spoilt(good, q=q))
+    refused("joint 3: q was clipped", identify, spoilt(good, q=q), error=IdentificationError)
 
 
 @pytest.mark.parametrize("level", [40, 80])
@@ -119,8 +118,7 @@ def test_a_frozen_sensor_is_refused_a_slow_one_and_outliers_are_flagged(good, se
     q = good.q.copy()
     hung = (good.t > 9) & (good.t < 9 + seconds)
     q[hung, 1] = q[hung, 1][0]
-    with pytest.raises(IdentificationError, match="joint 2: q stands"):
-        identify(spoilt(good, q=q), unit="N m")
+    refused("joint 2: q stands", identify, spoilt(good, q=q), unit="N m", error=IdentificationError)
     rows = round(4 * seconds) + 2
     slow = identify(spoilt(good, q=np.repeat(good.q[::rows], rows, axis=0)[: len(q)]), unit="N m")
     assert "joint 1: q is new only" in " ".join(slow.warnings)

@@ -5,6 +5,7 @@ from dataclasses import FrozenInstanceError, fields, replace
 import numpy as np
 import pytest
 from arms import random_arm
+from refusals import refused
 
 from ir50p_lab.errors import ArmError, LabError, SuspiciousArmWarning
 from ir50p_lab.modelling import (
@@ -38,10 +39,7 @@ GOOD = {"l": (0.3, 0.2, 0.3), "m": (3, 1, 1), "lc": (0.1, 0.1, 0.1)}
     ],
 )
 def test_impossible_arms_are_refused_with_the_reason(change, words):
-    with pytest.raises(LabError) as caught:
-        Arm(**{**GOOD, **change})
-    for word in words:
-        assert word in str(caught.value)
+    refused(words, Arm, **{**GOOD, **change}, error=LabError)
 
 
 @pytest.mark.parametrize(
@@ -112,10 +110,7 @@ def test_file_round_trip_is_exact(arm, tmp_path):
 def test_broken_files_are_named(text, words, tmp_path):
     path = tmp_path / "broken.toml"
     path.write_text(text)
-    with pytest.raises(ArmError) as caught:
-        Arm.load(path)
-    for word in [str(path), *words]:
-        assert word in str(caught.value)
+    refused([str(path), *words], Arm.load, path, error=ArmError)
 
 
 @pytest.mark.parametrize("encoding, letter", [("latin-1", "é"), ("utf-16", "é"), ("utf-16-le", "e")])
@@ -123,13 +118,11 @@ def test_a_file_in_another_encoding_is_told_which_to_use(encoding, letter, tmp_p
     path = tmp_path / "arm.toml"
     IR50P.save(path)
     path.write_bytes(path.read_text("utf-8").replace("name = ", f"name = '{letter}'  # ").encode(encoding))
-    with pytest.raises(ArmError, match=r"arm\.toml is not in UTF-8: .* save it with the encoding UTF-8"):
-        Arm.load(path)
+    refused(r"arm\.toml is not in UTF-8: .* save it with the encoding UTF-8", Arm.load, path, error=ArmError)
 
 
 def test_missing_file_is_named(tmp_path):
-    with pytest.raises(ArmError, match=r"nowhere\.toml.*IR50P_ARM"):
-        Arm.load(tmp_path / "nowhere.toml")
+    refused(r"nowhere\.toml.*IR50P_ARM", Arm.load, tmp_path / "nowhere.toml", error=ArmError)
 
 
 def test_course_arm_comes_from_the_environment(tmp_path, monkeypatch):
@@ -168,8 +161,7 @@ def test_friction_of_an_arm_and_its_offset():
     ],
 )
 def test_impossible_friction_is_refused(change, words):
-    with pytest.raises(LabError, match=words):
-        Friction(**change)
+    refused(words, Friction, **change, error=LabError)
 
 
 # --- motors -----------------------------------------------------------------------------------------------
@@ -197,8 +189,7 @@ def test_voltage_follows_from_the_motor_equations():
 def test_impossible_motors_are_refused(field):
     value = getattr(IR50P.actuators, field)
     bad = -value if np.ndim(value) == 0 else (value[0], -value[1], value[2])
-    with pytest.raises(ArmError, match=field):
-        replace(IR50P.actuators, **{field: bad})
+    refused(field, replace, IR50P.actuators, **{field: bad}, error=ArmError)
 
 
 def test_a_file_saved_by_an_editor_of_windows_is_read(tmp_path):

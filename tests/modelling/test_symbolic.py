@@ -5,14 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import sympy
+from arms import random_arm, random_states
+from refusals import refused
 from thesis_numbers import C_NUMBERS, STATES, reference, same_quantities
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import (
     IR50P,
     THESIS_A,
     THESIS_RODS,
-    Arm,
     coriolis_matrix,
     energy,
     forward_kinematics,
@@ -47,11 +47,6 @@ def numeric(model, arm):
 
     q, qd = model.q, model.qd
     return SimpleNamespace(M=function(model.M, q), C=function(model.C, q, qd), g=function(model.g, q))
-
-
-def random_states(n, seed):
-    rng = np.random.default_rng(seed)
-    return rng.uniform(-np.pi, np.pi, (n, 3)), rng.normal(0, 2, (n, 3)), rng.normal(0, 5, (n, 3))
 
 
 # ---- properties every mechanical system has -------------------------------------------------------------------------
@@ -107,18 +102,7 @@ def test_reference_values_of_the_thesis_models(name):
         assert (M[0, 2], g[0]) == (0, 0)
 
 
-def random_arm(seed):
-    """A valid arm with everything in it: unequal lengths, inertias with margin, rotors of the IR50P's motors."""
-    rng = np.random.default_rng(seed)
-    principal = rng.uniform(1.0, 1.9, (3, 3)) * 0.02
-    l = rng.uniform(0.1, 0.6, 3)
-    return Arm(
-        l=l, m=rng.uniform(0.3, 4, 3), lc=l * rng.uniform(0.1, 0.9, 3), Ixx=principal[0], Iyy=principal[1],
-        Izz=principal[2], actuators=IR50P.actuators, g=rng.uniform(1, 12),
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize("arm", [IR50P, THESIS_A, random_arm(0)], ids=lambda a: a.name)
+@pytest.mark.parametrize("arm", [IR50P, THESIS_A, random_arm(np.random.default_rng(0))], ids=lambda a: a.name)
 @pytest.mark.parametrize("links", ["in-line", "general"])
 def test_equal_to_the_closed_form(arm, links):
     model = derive(links=links)
@@ -129,7 +113,7 @@ def test_equal_to_the_closed_form(arm, links):
     )
     bare = arm.without_friction()
     offsets = []
-    for q, qd, qdd in zip(*random_states(60, seed=5), strict=True):
+    for q, qd, qdd in zip(*random_states(np.random.default_rng(5), 60), strict=True):
         close = {"rtol": 1e-12, "atol": 1e-12}
         assert np.allclose(formulas.M(q), mass_matrix(arm, q), **close)
         assert np.allclose(formulas.C(q, qd), coriolis_matrix(arm, q, qd), **close)
@@ -181,7 +165,7 @@ def test_general_arm_equals_mujoco():
     engine = mujoco.MjModel.from_xml_string(xml)
     data = mujoco.MjData(engine)
     formulas = numeric(derive(general=True), numbers)
-    for q, qd, qdd in zip(*random_states(50, seed=8), strict=True):
+    for q, qd, qdd in zip(*random_states(np.random.default_rng(8), 50), strict=True):
         data.qpos[:], data.qvel[:], data.qacc[:] = q, qd, qdd
         mujoco.mj_inverse(engine, data)
         tau = formulas.M(q) @ qdd + formulas.C(q, qd) @ qd + formulas.g(q)
@@ -214,17 +198,10 @@ def test_same_function_tells_apart():
 
 
 def test_refusals_say_what_to_do(inline):
-    with pytest.raises(InputError, match="choose 'in-line' or 'general' or 'thesis'"):
-        derive(links="bent")
-    with pytest.raises(InputError, match="'lc4' is no parameter"):
-        inline.values({"lc4": 1})
-    with pytest.raises(InputError, match=r"no number for .*m3"):
-        inline.values({"g": 9.81, "l1": 1})
-    with pytest.raises(InputError, match="m1 = nan"):
-        inline.values({"m1": float("nan")})
-    with pytest.raises(InputError, match="give a mapping"):
-        derive(links="thesis").values(IR50P)
-    with pytest.raises(InputError, match="choose 'M'"):
-        inline.read("K")
-    with pytest.raises(InputError, match="1 to 3"):
-        inline.b(0, 1, 1)
+    refused("choose 'in-line' or 'general' or 'thesis'", derive, links="bent")
+    refused("'lc4' is not a parameter", inline.values, {"lc4": 1})
+    refused(r"no number for .*m3", inline.values, {"g": 9.81, "l1": 1})
+    refused("m1 = nan", inline.values, {"m1": float("nan")})
+    refused("give a mapping", derive(links="thesis").values, IR50P)
+    refused("choose 'M'", inline.read, "K")
+    refused("1 to 3", inline.b, 0, 1, 1)

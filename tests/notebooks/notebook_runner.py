@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("[0-9A][0-9]_*.ipynb"))  # 00, 01 ... and the appendices A1, A2
 #: These obey the rules of the lab book; the others, until theirs is written, the old.
-REWRITTEN = tuple(f"{number:02d}" for number in range(19))
+REWRITTEN = tuple(f"{number:02d}" for number in range(20))
 #: Notebooks that keep results for later ones or load them.
 CHAIN = [path for path in NOTEBOOKS if re.search(r"\b(save|load)_result\b", path.read_text(encoding="utf-8"))]
 

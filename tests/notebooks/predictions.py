@@ -17,8 +17,8 @@ OWN = ("start.eleven_volts", "fk.bent")  # measured once the student has put in 
 
 
 def asked():
-    """(notebook, name, unit, question, tolerance) of each prediction of 00 to 18, in their order."""
-    for path in NOTEBOOKS[:19]:
+    """(notebook, name, unit, question, tolerance) of each prediction of 00 to 19, in their order."""
+    for path in NOTEBOOKS[:20]:
         text = ""
         for cell in nbformat.read(path, as_version=4).cells:
             if cell.cell_type == "markdown":

@@ -25,13 +25,3 @@ def test_sections_that_are_named_are_there():
         ):
             named = {first, *re.findall(r"[\d.]+", more)}
             assert named <= index.sections(number), f"{thesis}: {where_or_why}"
-
-
-def test_numbers_are_read():
-    assert index.equations("(1.5), (1.11) to (1.13), (1.46)-(1.48)") == {
-        "1.5", "1.11", "1.12", "1.13", "1.46", "1.47", "1.48"
-    }  # fmt: skip
-    assert index.labels("Table 1.1, Figures 4.15 and 4.16, Fig 1.8a,b") == {
-        "Table 1.1", "Figure 4.15", "Figure 4.16", "Figure 1.8"
-    }  # fmt: skip
-    assert index.labels("Tables 4.5 to 4.7") == {"Table 4.5", "Table 4.6", "Table 4.7"}

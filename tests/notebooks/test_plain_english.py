@@ -1,6 +1,8 @@
-"""Habits of a translation, once mended in notebooks, README and docs, stay out of them."""
+"""Habits of a translation, once mended, stay out of notebooks, README, docs, what `check` says, docstrings and messages."""
 
+import ast
 import re
+from functools import cache
 
 import nbformat
 import pytest
@@ -25,11 +27,18 @@ HABITS = (
     r"\beverybody, one sentence\b",
     r"\bthesis'(?!s)",
     r"\ball else\b",  # everything else
+    r"[;:] asked(?: for)? (?:is|are)\b",  # ... is wanted
+    r"\bbelongs? into\b|\b(the port|everything) free\b",
 )
 TABLES = re.compile(r"<!-- predictions -->.*<!-- end of predictions -->", re.S)  # written by a program
 
 
+@cache
 def texts():
+    return tuple(_texts())
+
+
+def _texts():
     for path in NOTEBOOKS:
         if path.name.startswith("A1"):
             continue  # its entries are those of data/errata.csv
@@ -38,6 +47,12 @@ def texts():
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))):
         if path.name != "index_of_equations.md":
             yield path.name, TABLES.sub("", path.read_text("utf-8"))
+    for path in sorted((ROOT / "ir50p_lab").rglob("functions/*.txt")):
+        yield path.name, path.read_text("utf-8")
+    for path in sorted((ROOT / "ir50p_lab").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield f"{path.name}, line {node.lineno}", node.value
 
 
 @pytest.mark.parametrize("habit", HABITS)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from refusals import refused
 
-from ir50p_lab.errors import InputError
 from ir50p_lab.signals import alias, low_pass
 
 RATE = 100.0
@@ -51,11 +51,6 @@ def test_a_constant_passes_from_the_first_sample_on(level, order, cutoff):
 # ---- the thesis' cut-off
 
 
-def test_300_hz_at_100_hz_is_refused_with_the_reason():
-    with pytest.raises(InputError, match=r"300 Hz, but samples at 100 Hz hold nothing above half their rate, 50 Hz"):
-        low_pass(SLOW, 300, 100)
-
-
 def test_why_noise_above_half_the_rate_cannot_be_filtered_any_more():
     f = np.array([300.0, 290, 60, 49, 110, 997])
     np.testing.assert_allclose(alias(f, RATE), [0, 10, 40, 49, 10, 3], atol=1e-9)
@@ -66,15 +61,14 @@ def test_why_noise_above_half_the_rate_cannot_be_filtered_any_more():
 
 @pytest.mark.parametrize("excess", [0.0, 1e-9, 0.1, 1.0, 50.0, 250.0, 1e6])
 def test_cut_off_at_or_above_half_the_rate(excess):
-    with pytest.raises(InputError, match="hold nothing above half their rate, 50 Hz"):
-        low_pass(SLOW, 50 + excess, RATE)
+    said = f"{50 + excess:g} Hz, but samples at 100 Hz hold nothing above half their rate, 50 Hz"
+    refused([said], low_pass, SLOW, 50 + excess, RATE)
     low_pass(SLOW, 49.9, RATE)
 
 
 @pytest.mark.parametrize("cutoff", [0, -1e-9, -3, math.nan, None, "5", (3, 4)])
 def test_cut_offs_that_are_none(cutoff):
-    with pytest.raises(InputError, match="cutoff_hz"):
-        low_pass(SLOW, cutoff, RATE)
+    refused("cutoff_hz", low_pass, SLOW, cutoff, RATE)
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
@@ -82,20 +76,13 @@ def test_cut_offs_that_are_none(cutoff):
 def test_numbers_that_are_not_finite(bad, place):
     x = SLOW.copy()
     x[place] = bad
-    with pytest.raises(InputError, match="x holds"):
-        low_pass(x, 3, RATE)
+    refused("x holds", low_pass, x, 3, RATE)
 
 
 def test_other_bad_input():
-    with pytest.raises(InputError, match="rate_hz"):
-        low_pass(SLOW, 3, 0)
-    with pytest.raises(InputError, match="order"):
-        low_pass(SLOW, 3, RATE, order=0)
-    with pytest.raises(InputError, match="kind"):
-        low_pass(SLOW, 3, RATE, kind="fast")
-    with pytest.raises(InputError, match="shape"):
-        low_pass(np.zeros((2, 2, 2)), 3, RATE)
-    with pytest.raises(InputError, match="numbers"):
-        low_pass("noise", 3, RATE)
-    with pytest.raises(InputError, match="backward"):
-        low_pass(SLOW[:5], 3, RATE, kind="zero-phase")
+    refused("rate_hz", low_pass, SLOW, 3, 0)
+    refused("order", low_pass, SLOW, 3, RATE, order=0)
+    refused("kind", low_pass, SLOW, 3, RATE, kind="fast")
+    refused("shape", low_pass, np.zeros((2, 2, 2)), 3, RATE)
+    refused("numbers", low_pass, "noise", 3, RATE)
+    refused("backward", low_pass, SLOW[:5], 3, RATE, kind="zero-phase")

@@ -10,9 +10,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ir50p_lab.controllers import PID
-from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.simulation import simulate, sweep
 
@@ -101,13 +101,11 @@ def test_killed_while_writing_it_still_resumes(tmp_path):
 def test_a_file_of_something_else_is_refused(tmp_path):
     path = tmp_path / "notes.txt"
     path.write_text("hello\nworld\n")
-    with pytest.raises(InputError, match=r"notes\.txt, line 1"):
-        sweep(stiffness_error, CASES, progress=False, save_to=path, executor=Inline())
+    refused(r"notes\.txt, line 1", sweep, stiffness_error, CASES, progress=False, save_to=path, executor=Inline())
     assert path.read_text() == "hello\nworld\n"
 
 
 def test_cases_and_results_that_cannot_be_saved_are_refused(tmp_path):
-    with pytest.raises(InputError, match="cannot be named"):
-        sweep(len, [object()], executor=Inline(), progress=False)
-    with pytest.raises(InputError, match="cannot be saved"):
-        sweep(lambda case: object(), [1], executor=Inline(), progress=False, save_to=tmp_path / "x.jsonl")
+    here = {"executor": Inline(), "progress": False}
+    refused("cannot be named", sweep, len, [object()], **here)
+    refused("cannot be saved", sweep, lambda case: object(), [1], **here, save_to=tmp_path / "x.jsonl")

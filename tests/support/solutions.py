@@ -7,14 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from ir50p_lab.course.checking.tasks import task
+from ir50p_lab.course.robot.catalogue import ORDER
 
 FOLDER = Path(__file__).parents[1] / "solutions"
-ORDER = (
-    "rot_z dh_matrix frames forward_kinematics inverse_kinematics reach jacobian damped_step mass_matrix "
-    "gravity_torque velocity_torque rk4_step integrate quintic friction_torque motor_torque PID step_metrics fit_line "
-    "low_pass least_squares regressor rls_step fit_percent computed_torque adaptive_step hue_mask circle_votes "
-    "homography pixel_to_plane find_and_reach"
-).split()
 
 
 def source(name):

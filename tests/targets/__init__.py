@@ -1,1 +1,1 @@
-"""What the project set out to reach, measured by command: `python -m tests.targets.vision [--quick]`."""
+"""What the project set out to reach, measured by command: `python -m tests.targets [NAME] [--quick]`."""

@@ -1,13 +1,9 @@
-"""Computed torque beside the thesis: `python -m tests.targets.computed_torque [--quick]`, medians over 20 units.
+"""Computed torque: RMS tracking error in mrad, joints 1/2/3, simulated, medians over 20 units (quick: 3).
 
 The thesis gives no errors for its Figure 4.13, only that the arm follows with some error and lag; numbers named 'trial'
-were checked with a second program before this one was written. RMS in mrad, joints 1/2/3. Tables 2.4-2.6 and Figure 2.8:
+were checked with a second program before this one was written. Tables 2.4-2.6 and Figure 2.8:
 tests/controllers/test_computed_torque.py.
 """
-
-import argparse
-import sys
-import time
 
 import numpy as np
 from scipy.optimize import brentq
@@ -20,18 +16,13 @@ from ir50p_lab.identification import identify, load_excitations, regressor
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import quintic, sinusoid
 from tests.targets.rivals import PlannedSpeed, PushAndPD
-from tests.targets.rows import Row, table
+from tests.targets.rows import Row
 
 TABLES_4_5 = {"kp": (25, 9, 49), "kd": (10, 6, 14)}  # Tables 4.5-4.7
 GOAL = (np.pi / 2, np.pi / 2, -np.pi / 3)
 # rad, rad/s. The trial's own sinusoid is not known any more; on this one the PID of Tables 4.1-4.3 has the same errors
 SWING = sinusoid((0.8, 0.4, 0.3), (0.5, 0.8, 1.0), offset=(0.0, 0.8, -0.8))
 MOVE = quintic((0, 0, 0), GOAL, duration=6)
-
-
-def excitation():
-    """The motion of the recordings that models are identified from."""
-    return load_excitations()["training"]
 
 
 def record(seed, motion):
@@ -51,9 +42,10 @@ def tracked(controller, seed, target=SWING, seconds=15.0):
         return np.full(3, np.inf)
 
 
-def rows_bench(seeds):
+def rows(quick):
     """Tables 4.5-4.7, Figure 4.13: each unit is recorded, identified and then tracks, on its own model."""
-    motion, found, models = excitation(), {}, []
+    seeds = range(100, 103 if quick else 120)
+    motion, found, models = load_excitations()["training"], {}, []
     for seed in seeds:
         recording = record(seed, motion)
         model = identify(recording, l2=IR50P.l[1])
@@ -76,11 +68,11 @@ def rows_bench(seeds):
         ("computed torque", "sinusoid"): "'some error', lag; trial 13/37/13",
         ("computed torque", "quintic 6 s"): "trial 17/26/8",
     }
-    rows = []
+    made = []
     for (name, move), values in found.items():
         middle, worst = np.median(values, axis=0), np.max(values, axis=0)
         asked = (name, move) == ("computed torque", "sinusoid")
-        rows.append(
+        made.append(
             Row(
                 f"{name}, {move}: median (worst)",
                 "<= 20/50/20" if asked else "-",
@@ -89,7 +81,7 @@ def rows_bench(seeds):
                 bool((middle <= target).all()) if asked else None,
             )
         )
-    return rows + rows_saturation(models[0], seeds[0])
+    return made + rows_saturation(models[0], seeds[0])
 
 
 def rows_saturation(model, seed):
@@ -112,24 +104,6 @@ def share(model, duration):
     return np.abs(np.einsum("nij,ij->ni", regressor(*rows.transpose(1, 0, 2)), model.theta)).max() / 255
 
 
-def text(values, digits=0):
+def text(values):
     """Three numbers with slashes between."""
-    return "/".join(f"{x:.{digits}f}" if x < 1e4 else "far" for x in values)
-
-
-def main(arguments=None):
-    """Print the table; returns 1 if a target is missed."""
-    parser = argparse.ArgumentParser(
-        prog="python -m tests.targets.computed_torque", description=__doc__.splitlines()[0]
-    )
-    parser.add_argument("--quick", action="store_true", help="3 units instead of 20")
-    options = parser.parse_args(arguments)
-    start, seeds = time.perf_counter(), range(100, 103 if options.quick else 120)
-    rows = rows_bench(seeds)
-    print(table(rows, f"Computed torque: RMS tracking error in mrad, joints 1/2/3, simulated ({len(seeds)} units)"))
-    print(f"{time.perf_counter() - start:.0f} s", file=sys.stderr)
-    return int(any(row.ok is False for row in rows))
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return "/".join(f"{x:.0f}" if x < 1e4 else "far" for x in values)

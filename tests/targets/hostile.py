@@ -1,8 +1,8 @@
-"""Hostile functions put past the gate: each has to be wrong, to leave the files beside it alone, and the next function
-has to be right all the same.
+"""Hostile functions put past the gate.
+
+Each has to be wrong, to leave the files beside it alone, and the next function has to be right all the same.
 """
 
-import argparse
 import os
 import tempfile
 import time
@@ -10,7 +10,7 @@ from pathlib import Path
 from unittest import mock
 
 from ir50p_lab.course.grading import sandbox
-from tests.targets.rows import Row, table
+from tests.targets.rows import Row
 
 _RIGHT = Path(__file__).parents[1] / "solutions" / "quintic.py"
 _PAST_THE_GATE = """
@@ -34,9 +34,10 @@ _BODIES = {
 }
 
 
-def rows(seconds):
-    """The table; seconds: for the process of one student."""
-    before = sandbox.bubblewrap()
+def rows(quick):
+    """The table; quick: less time for the process of each student."""
+    before, seconds = sandbox.bubblewrap(), 20 if quick else 60
+    yield Row(sandbox.isolation(), "-", "-")
     for what, body in _BODIES.items():
         if what == "fork bomb" and before and hasattr(os, "geteuid") and os.geteuid() == 0:
             yield Row(what, "wrong", "not tried: root inside bubblewrap needs a limit of the system")
@@ -47,24 +48,10 @@ def rows(seconds):
             text = f"import os\n\n\ndef rot_z(angle):\n    {body.replace('{victim}', str(victim))}\n"
             began = time.monotonic()
             functions = {"rot_z": text, "quintic": _RIGHT.read_text("utf-8")}
-            found = sandbox.verdicts(functions, before, seconds)
+            with mock.patch.object(sandbox, "_INSIDE", ("-c", _PAST_THE_GATE)):
+                found = sandbox.verdicts(functions, before, seconds)
             took = time.monotonic() - began
             whole = victim.is_file() and victim.read_text() == "precious"
         states = found["rot_z"][0], found["quintic"][0]
         said = f"{states[0]}, {states[1]}, files {'whole' if whole else 'HARMED'}, {took:.0f} s"
         yield Row(what, "wrong, next right, files whole", said, ok=states == ("wrong", "right") and whole)
-
-
-def main(arguments):
-    """Print the table; 1 when a target is missed."""
-    parser = argparse.ArgumentParser(prog="python -m tests.targets.hostile", description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="less time for each student")
-    options = parser.parse_args(arguments)
-    with mock.patch.object(sandbox, "_INSIDE", ("-c", _PAST_THE_GATE)):
-        found = list(rows(20 if options.quick else 60))
-    print(table(found, f"Hostile functions. {sandbox.isolation()}"))
-    return int(any(row.ok is False for row in found))
-
-
-if __name__ == "__main__":
-    raise SystemExit(main(None))

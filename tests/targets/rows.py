@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+_MARKS = {True: "met", False: "MISSED", None: ""}
+
 
 @dataclass(frozen=True)
 class Row:
@@ -13,16 +15,11 @@ class Row:
     thesis: str = "-"  # '18 px radius, no error given'; '-' where it says nothing
     ok: bool | None = None  # True: target met; False: missed; None: no target, for information
 
-    @property
-    def mark(self):
-        """One word for the last column."""
-        return {True: "met", False: "MISSED", None: ""}[self.ok]
-
 
 def table(rows, title=""):
     """The rows as one text table: columns as wide as their widest entry."""
     head = ("what", "target", "measured", "thesis", "")
-    lines = [head, *((r.what, r.target, r.measured, r.thesis, r.mark) for r in rows)]
+    lines = [head, *((r.what, r.target, r.measured, r.thesis, _MARKS[r.ok]) for r in rows)]
     width = [max(len(line[i]) for line in lines) for i in range(len(head))]
     text = ["  ".join(cell.ljust(w) for cell, w in zip(line, width, strict=True)).rstrip() for line in lines]
     text.insert(1, "-" * (sum(width) + 2 * (len(width) - 1)))

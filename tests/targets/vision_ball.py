@@ -1,4 +1,4 @@
-"""The ball finder against its targets, on rendered pictures: `python -m tests.targets.vision --only ball`.
+"""The ball finder against its targets, on rendered pictures.
 
 Seeds from 80000 on, on which nothing was tuned. The pictures are hard on purpose (other tables, coloured light, noise,
 half-hidden balls); a scene of kind 'ball' counts as found if a ball is reported within a third of the radius of the
@@ -54,7 +54,7 @@ def _percentiles(errors):
     return np.percentile(errors, [50, 95]) if len(errors) else (np.inf, np.inf)
 
 
-def rows(quick=False):
+def rows(quick):
     """The targets of the ball finder as Rows; quick: 20 pictures of each kind."""
     n = 20 if quick else 300
     seeds = range(FIRST_SEED, FIRST_SEED + n)

@@ -51,7 +51,7 @@ def corner_set(seed, count, noise=0.1):
     return camera, calibrate_corners(points, seen, camera.size)
 
 
-def rows(quick=False):
+def rows(quick):
     """Rows of the calibration; quick: few sets."""
     sets, views, synthetic = (3, 8, 10) if quick else (50, 12, 50)
     each, joint, errors, refused, seconds = [], [], [], 0, []

@@ -56,7 +56,7 @@ def one_reach(task):
     return np.linalg.norm(done.tip_true - goal), seen, np.linalg.norm(done.tip - done.tip_true), done.miss
 
 
-def rows(*, quick=False):
+def rows(quick):
     """The table of targets."""
     n = 10 if quick else 200
     balls = places_in(work_area(IR50P), np.random.default_rng(11), n)

@@ -20,15 +20,11 @@ def own_calibration():
     return calibrate(sorted((PICTURES / "flat").glob("board_*.jpg")), progress=False)
 
 
-def picture_of_the_board():
-    """The bench with the board lying at its known place, rendered (RGB)."""
-    return load_image(PICTURES / "table" / "board.jpg")
-
-
 @cache
 def own_plane():
     """TablePlane of our own calibration and one picture of the lying board."""
-    return TablePlane.from_picture(own_calibration(), picture_of_the_board(), T_table_board=T_BASE_BOARD)
+    picture = load_image(PICTURES / "table" / "board.jpg")  # rendered, with the board at its known place
+    return TablePlane.from_picture(own_calibration(), picture, T_table_board=T_BASE_BOARD)
 
 
 @cache

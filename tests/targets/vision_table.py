@@ -13,28 +13,18 @@ from tests.targets.vision_setup import own_calibration, own_plane
 TABLE_4_8 = (((400, -100), (406, -101)), ((300, 300), (300, 302)), ((500, 0), (492, -6)), ((400, 200), (402, 199)))
 
 
-def locator():
-    """Our own plane with the detector before it; no camera."""
-    return BallLocator(None, own_plane())
-
-
 def found(place, seed):
     """Position (2,) m of a rendered ball that lies at `place`, NaN if it is not found."""
     image, _ = render_scene(bench_scene(SceneBall(position=(*place, 0.03))), seed=seed)
-    seen = locator().seen_in(image, simulated=True)
+    seen = BallLocator(None, own_plane()).seen_in(image, simulated=True)
     return seen.position[:2] if seen else np.full(2, np.nan)
 
 
-def over_the_table(n, seed=2):
-    """Errors (n, 2) m of n balls drawn over the work area."""
-    places = places_in(work_area(IR50P), np.random.default_rng(seed), n)[:, :2]
-    return np.array([found(place, k) - place for k, place in enumerate(places)])
-
-
-def rows(*, quick=False):
+def rows(quick):
     """The table of targets."""
     n = 25 if quick else 300
-    error = np.linalg.norm(over_the_table(n), axis=1)
+    places = places_in(work_area(IR50P), np.random.default_rng(2), n)[:, :2]
+    error = np.linalg.norm([found(place, k) - place for k, place in enumerate(places)], axis=1)
     missed = int(np.isnan(error).sum())
     median, p95 = np.nanmedian(error), np.nanpercentile(error, 95)
     ours = np.array([1e3 * (found(np.array(real) / 1e3, 1000 + k)) for k, (real, _) in enumerate(TABLE_4_8)])

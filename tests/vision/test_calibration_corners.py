@@ -15,14 +15,6 @@ from ir50p_lab.vision.calibration.reject_reasons import NotUsable
 BOARD = Checkerboard()
 
 
-@pytest.fixture(scope="module", autouse=True)
-def one_thread():
-    before = cv2.getNumThreads()
-    cv2.setNumThreads(1)
-    yield
-    cv2.setNumThreads(before)
-
-
 def grey(T, **changes):
     return paint(T, **changes)[..., 0].copy()
 

@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 import pytest
 from board_pictures import SIZE, corner_sets, painted_set
+from refusals import refused
 
 from ir50p_lab.course.camera.board_poses import board_poses
 from ir50p_lab.errors import CalibrationError, InputError
@@ -47,17 +48,15 @@ def test_where_the_camera_stands_is_kept_too_and_files_of_before_have_none(calib
     assert Calibration.load(path).T_base_cam is None
     details["T_base_cam"] = (2 * stands).tolist()
     path.write_text(json.dumps(before | {"details": [json.dumps(details)]}), encoding="utf-8")
-    with pytest.raises(CalibrationError, match="damaged"):
-        Calibration.load(path)
+    refused("damaged", Calibration.load, path, error=CalibrationError)
 
 
 def test_another_size_and_what_is_no_size_are_refused(calibration, tmp_path):
     path = calibration.save(tmp_path / "camera.yml")
-    with pytest.raises(CalibrationError, match=r"640x480, not 1280x720.*calibrate it at the new one"):
-        Calibration.load(path, size=(1280, 720))
+    said = r"640x480, not 1280x720.*calibrate it at the new one"
+    refused(said, Calibration.load, path, size=(1280, 720), error=CalibrationError)
     for size in (5, ["camera.yml"], "640x480"):
-        with pytest.raises(InputError, match="size = "):
-            Calibration.load(path, size=size)
+        refused("size = ", Calibration.load, path, size=size)
 
 
 def test_a_calibration_in_place_of_a_pinhole(calibration):
@@ -74,12 +73,9 @@ def test_files_that_are_no_calibration(calibration, tmp_path):
     damaged = path.read_text().replace('\\"size\\": [640', '\\"size\\": [-640')
     for text in ("", "hello", "%YAML:1.0\n---\nimage_width: 640\n", "{", "\x00\x01", damaged):
         path.write_text(text)
-        with pytest.raises(CalibrationError, match="damaged"):
-            Calibration.load(path)
-    with pytest.raises(CalibrationError, match="calibrate the camera, and save"):
-        Calibration.load(tmp_path / "none.yml")
-    with pytest.raises(CalibrationError, match="cannot be written"):
-        calibration.save(tmp_path / "no" / "folder.yml")
+        refused("damaged", Calibration.load, path, error=CalibrationError)
+    refused("calibrate the camera, and save", Calibration.load, tmp_path / "none.yml", error=CalibrationError)
+    refused("cannot be written", calibration.save, tmp_path / "no" / "folder.yml", error=CalibrationError)
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -93,8 +89,7 @@ def test_pictures_give_their_camera_back(seed):
 
 
 def test_a_board_too_large_for_the_picture_has_no_poses():
-    with pytest.raises(InputError, match="0 of 3 poses"):
-        board_poses(bench_camera()[0], 3, board=Checkerboard((9, 60)))
+    refused("0 of 3 poses", board_poses, bench_camera()[0], 3, board=Checkerboard((9, 60)))
 
 
 def test_points_that_were_given_are_no_checkerboard(tmp_path):

@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 import pytest
+from refusals import refused
 
 from ir50p_lab.errors import CameraError, ImageError
 from ir50p_lab.vision import PictureFolder, Webcam, camera, open_camera, save_image
@@ -68,18 +69,15 @@ def test_a_webcam_that_answers_is_taken(plug_in, capsys, tmp_path):
 
 
 def test_without_a_webcam_it_says_what_to_do(plug_in):
-    with pytest.raises(CameraError, match=r"webcam 0 gives no picture.*plugged in"):
-        open_camera()
+    refused(r"webcam 0 gives no picture.*plugged in", open_camera, error=CameraError)
 
 
 def test_environment_variable(plug_in, monkeypatch, folder):
     monkeypatch.setenv("IR50P_CAMERA", f"folder:{folder}")
     assert isinstance(open_camera(), PictureFolder)
-    with pytest.raises(CameraError, match="webcam 0"):
-        open_camera(0)  # the argument wins
+    refused("webcam 0", open_camera, 0, error=CameraError)  # the argument wins
     monkeypatch.setenv("IR50P_CAMERA", "rendered")
-    with pytest.raises(CameraError, match=r"'rendered'.*folder:PATH"):
-        open_camera()
+    refused(r"'rendered'.*folder:PATH", open_camera, error=CameraError)
 
 
 def test_folder(folder, capsys):
@@ -87,8 +85,7 @@ def test_folder(folder, capsys):
     frames = [found.read() for _ in range(3)]
     assert [frame.source for frame in frames] == ["view1.png", "view2.png", "view10.png"]
     assert (frames[1].image == 2).all() and not frames[1].simulated
-    with pytest.raises(CameraError, match="no more pictures"):
-        found.read()
+    refused("no more pictures", found.read, error=CameraError)
     assert "8x6, photographs" in capsys.readouterr().out
 
 
@@ -99,18 +96,15 @@ def test_folder_of_rendered_pictures_says_so(tmp_path, capsys):
 
 
 def test_bad_folders(tmp_path):
-    with pytest.raises(ImageError, match="does not exist"):
-        open_camera("folder:nowhere")
-    with pytest.raises(ImageError, match="no picture"):
-        open_camera(f"folder:{tmp_path}")
+    refused("does not exist", open_camera, "folder:nowhere", error=ImageError)
+    refused("no picture", open_camera, f"folder:{tmp_path}", error=ImageError)
 
 
 def test_unplugged_while_streaming(plug_in):
     capture = plug_in(FakeCapture(pictures=2))
     found = Webcam(0)
     found.read()
-    with pytest.raises(CameraError, match="gives no picture"):
-        found.read()
+    refused("gives no picture", found.read, error=CameraError)
     found.close()
     found.close()
     assert capture.released
@@ -121,19 +115,16 @@ def test_a_driver_that_only_goes_silent_is_given_up_after_a_while(plug_in, monke
     found = Webcam(0)
     capture.read = lambda: (False, None)
     monkeypatch.setattr(camera, "_PATIENCE", 0.05)
-    with pytest.raises(CameraError, match="gives no picture"):
-        found.read()
+    refused("gives no picture", found.read, error=CameraError)
 
 
-@pytest.mark.parametrize(("channels", "words"), [(1, "one channel"), (2, "no colour picture")])
+@pytest.mark.parametrize(("channels", "words"), [(1, "one channel"), (2, "not a colour picture")])
 def test_a_webcam_without_colour(plug_in, channels, words):
     capture = plug_in(FakeCapture(channels=channels))
-    with pytest.raises(ImageError, match=f"the picture of webcam 0.*{words}"):
-        Webcam(0)
+    refused(f"the picture of webcam 0.*{words}", Webcam, 0, error=ImageError)
     assert capture.released  # or the next attempt finds it busy
 
 
 def test_looking_for_a_webcam_prints_nothing(capfd):
-    with pytest.raises(CameraError, match="webcam 97"):
-        Webcam(97)
+    refused("webcam 97", Webcam, 97, error=CameraError)
     assert capfd.readouterr() == ("", "")

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from PIL import Image
+from refusals import refused
 
 from ir50p_lab.errors import CameraError
 from ir50p_lab.vision import camera, open_camera, page_camera
@@ -50,20 +51,17 @@ def test_what_the_page_sends_is_read_once(page):
     sends(found)
     frame = found.read()
     assert np.abs(frame.image.astype(int) - RGB).max() < 4 and not frame.simulated
-    with pytest.raises(CameraError, match=r"no new picture.*run this cell again"):
-        found.read()
+    refused(r"no new picture.*run this cell again", found.read, error=CameraError)
 
 
 def test_before_the_page_has_answered_the_next_cell_is_named():
-    with pytest.raises(CameraError, match="in the next cell"):
-        open_camera("page").read()
+    refused("in the next cell", open_camera("page").read, error=CameraError)
 
 
 def test_why_the_camera_is_off_is_told_until_it_is_on(page):
     found, _ = page
     found._heard(None, {"off": "The browser finds no camera"}, [])
-    with pytest.raises(CameraError, match="finds no camera"):
-        found.read()
+    refused("finds no camera", found.read, error=CameraError)
     sends(found)
     assert found.read().image.shape == RGB.shape
 
@@ -74,8 +72,7 @@ def test_an_old_picture_is_refused_whatever_the_page_s_clock_says(page, ahead):
     sends(found, time.time() + ahead)
     found.read()
     sends(found, time.time() + ahead - 20)  # it has waited behind a long cell
-    with pytest.raises(CameraError, match="no new picture"):
-        found.read()
+    refused("no new picture", found.read, error=CameraError)
 
 
 def test_circles_are_answered_and_a_function_that_fails_is_told(page):
@@ -97,8 +94,7 @@ def test_a_picture_is_kept_on_demand_alone(page, monkeypatch):
     found, _ = page
     shown = []
     monkeypatch.setattr(page_camera, "display", shown.append)
-    with pytest.raises(CameraError, match="no picture to keep"):
-        found.keep()
+    refused("no picture to keep", found.keep, error=CameraError)
     sends(found)
     assert shown == []
     found.keep()

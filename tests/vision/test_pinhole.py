@@ -3,8 +3,9 @@
 import cv2
 import numpy as np
 import pytest
+from refusals import refused
 
-from ir50p_lab.errors import CalibrationError, ImageError, InputError
+from ir50p_lab.errors import CalibrationError, ImageError
 from ir50p_lab.vision import Pinhole
 from ir50p_lab.vision.rendering import look_at, pose
 
@@ -43,10 +44,8 @@ def test_a_straightened_picture_shows_what_a_lens_that_does_not_bend_shows():
     for x, y in Pinhole(K).project(T, places).round().astype(int):
         rows, columns = np.nonzero(straight[y - 12 : y + 13, x - 12 : x + 13] > 127)
         assert np.hypot(rows.mean() - 12, columns.mean() - 12) < 1.5
-    with pytest.raises(CalibrationError, match="640x480, not 320x240"):
-        bends.straighten(picture[::2, ::2])
-    with pytest.raises(ImageError):
-        bends.straighten(picture[:, :, 0])
+    refused("640x480, not 320x240", bends.straighten, picture[::2, ::2], error=CalibrationError)
+    refused("", bends.straighten, picture[:, :, 0], error=ImageError)
 
 
 def test_rays_point_at_what_is_projected():
@@ -105,8 +104,7 @@ def test_look_at_puts_the_target_on_the_axis_and_up_upwards():
     ],
 )
 def test_refusals(make, words):
-    with pytest.raises(InputError, match=words):
-        make()
+    refused(words, make)
 
 
 def test_frozen():

@@ -1,15 +1,14 @@
 """From pixel to table: two routes, exact on exact input, bad input refused by name."""
 
-import cv2
 import numpy as np
 import pytest
+from refusals import refused
 
-from ir50p_lab.errors import CalibrationError, InputError, VisionError
+from ir50p_lab.errors import CalibrationError, VisionError
 from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, transform
 from ir50p_lab.vision.pinhole import Pinhole
 from ir50p_lab.vision.table_plane import TablePlane
 
-cv2.setNumThreads(1)
 CAMERA = Pinhole([[705, 0, 322.5], [0, 702, 238.1], [0, 0, 1]], (-0.28, 0.11, 6e-4, -4e-4, -0.02))
 
 
@@ -106,20 +105,16 @@ def test_transforms_invert():
 def test_corners_of_another_board_are_refused():
     points = board_points(T_table_board=LYING)
     corners = CAMERA.project(POSE, points)
-    with pytest.raises(CalibrationError, match="pattern and square size"):
-        TablePlane.from_board(CAMERA, corners, board_points((6, 9), T_table_board=LYING))
-    with pytest.raises(InputError, match="below the table"):  # next rows towards +y: a mirror image
-        TablePlane.from_board(CAMERA, corners, points * [1, -1, 1])
-    with pytest.raises(InputError, match="same number"):
-        TablePlane.from_board(CAMERA, corners[:-1], points)
+    place, other = TablePlane.from_board, board_points((6, 9), T_table_board=LYING)
+    refused("pattern and square size", place, CAMERA, corners, other, error=CalibrationError)
+    refused("below the table", place, CAMERA, corners, points * [1, -1, 1])  # next rows towards +y: a mirror image
+    refused("same number", place, CAMERA, corners[:-1], points)
 
 
 def test_pixels_that_look_past_the_table_are_refused():
     plane = TablePlane(CAMERA, looking_at((5.0, 0, 0.4), (-0.5, 0, 0.5)))
-    with pytest.raises(VisionError, match="horizon"):
-        plane.to_table((320, 100))
-    with pytest.raises(InputError, match="no ray"):
-        plane.to_table((1e4, 300))
+    refused("horizon", plane.to_table, (320, 100), error=VisionError)
+    refused("no ray", plane.to_table, (1e4, 300))
 
 
 @pytest.mark.parametrize(
@@ -133,8 +128,7 @@ def test_pixels_that_look_past_the_table_are_refused():
 )
 def test_a_plane_of_bad_numbers_is_refused(change, match):
     good = {"camera": CAMERA, "T_cam_table": POSE}
-    with pytest.raises(InputError, match=match):
-        TablePlane(**(good | change))
+    refused(match, TablePlane, **good | change)
 
 
 @pytest.mark.parametrize(
@@ -147,13 +141,11 @@ def test_a_plane_of_bad_numbers_is_refused(change, match):
     ],
 )
 def test_bad_pixels_are_refused(xy, options, match):
-    with pytest.raises(InputError, match=match):
-        TablePlane(CAMERA, POSE).to_table(xy, **options)
+    refused(match, TablePlane(CAMERA, POSE).to_table, xy, **options)
 
 
 def test_a_picture_of_another_size_than_the_calibration_is_refused():
     small = np.zeros((240, 320, 3), np.uint8)
-    with pytest.raises(CalibrationError, match="640x480, not 320x240"):
-        TablePlane.from_picture(CAMERA, small)
-    with pytest.raises(CalibrationError, match="not found"):  # one of the right size, without a board
-        TablePlane.from_picture(CAMERA.scaled((320, 240)), small)
+    refused("640x480, not 320x240", TablePlane.from_picture, CAMERA, small, error=CalibrationError)
+    scaled = CAMERA.scaled((320, 240))  # of the right size, without a board
+    refused("not found", TablePlane.from_picture, scaled, small, error=CalibrationError)

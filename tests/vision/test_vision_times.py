@@ -15,14 +15,6 @@ from ir50p_lab.vision import calibrate, find_balls, render_scene
 from ir50p_lab.vision.rendering import Patch, SceneBall, bench_scene
 
 
-@pytest.fixture(autouse=True)
-def one_thread():
-    threads = cv2.getNumThreads()
-    cv2.setNumThreads(1)
-    yield
-    cv2.setNumThreads(threads)
-
-
 @pytest.fixture(scope="module")
 def pictures():
     """Of two boards: one with whole squares around it, and one with its outer squares cut narrow."""

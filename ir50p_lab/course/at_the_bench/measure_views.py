@@ -53,7 +53,7 @@ def error_bands(x, fit, at):
             ax.plot(ends, 1000 * (slope * ends + offset), color=COLOURS["grey"], lw=0.6)
         ax.axvline(at, **SETPOINT)
         ax.set(xlabel="counts", ylim=(-60, 60), title=f"slope and offset: {title}")
-    axes[0].set_ylabel("beside the fit [mrad]")
+    axes[0].set_ylabel("off the fit [mrad]")
     return figure
 
 

@@ -61,7 +61,7 @@ def cut(text, name, earlier, given="", function_arguments=(), notebook=()):
         elif one == "my_robot":
             raise CannotTake(f"it calls `my_robot.{name}`: that is the function you are about to write")
         elif one in ORDER:
-            raise CannotTake(f"it calls `{one}`: this function is to do without")
+            raise CannotTake(f"it calls `{one}`: this function has to do without it")
         elif one in _BACK_DOORS:
             raise CannotTake(f"it uses `{one}`: your robot stands on plain functions and NumPy alone")
         elif one not in GIVEN and not hasattr(builtins, one):
@@ -95,7 +95,7 @@ def cell_text(thing):
     code = getattr(plain_function(thing), "__code__", None)
     text = "".join(linecache.getlines(code.co_filename)) if code else ""
     if not text:
-        raise CannotTake("its text is not to be found: define it in a cell of the notebook, with `def`")
+        raise CannotTake("its text cannot be found: define it in a cell of the notebook, with `def`")
     return text
 
 
@@ -130,7 +130,7 @@ def globals_of(node):
 
 def _stranger(name, notebook, text):
     if name == "self":
-        return "it uses `self` where it is no argument: each function of a class begins with it"
+        return "it uses `self` where it is not an argument: each function of a class begins with it"
     if re.search(rf"\bself\.{name}\b", text):
         return f"it uses `{name}` by itself: only what stands in `self` lasts from one function of a class to the next"
     value = notebook.get(name)

@@ -42,7 +42,7 @@ def check(name, answer=...):
     except CannotTake as reason:
         return _show("wrong", name, f"not yet: {with_full_stop(str(reason))}")
     if dots := has_dots(source.text):
-        where = f": dots still stand in `{dots[0]}`" if dots[0].strip(".") else ""
+        where = f": there are still dots in `{dots[0]}`" if dots[0].strip(".") else ""
         return _show("open", name, f"not written yet{where}. It returns {wanted.returns}.")
     result = grade(wanted, source)
     if result.state == "right":
@@ -51,12 +51,12 @@ def check(name, answer=...):
 
 
 def reset(name):
-    """Begin a function again: yours goes to my_robot/old, the course's stands in."""
+    """Start a function again: yours goes to my_robot/old, and the course's stands in for it."""
     if not is_function(str(name)):
-        raise InputError(f"{name!r} is no function of my_robot; they are {', '.join(ORDER)}")
+        raise InputError(f"{name!r} is not a function of my_robot; those are {', '.join(ORDER)}")
     student_package.put_aside(name)
     lab_book.change(lambda book: book["attempts"].pop(name, None))
-    print(f"{name}: begun again; what you had is in {student_package.folder() / 'old'}")
+    print(f"{name}: started again; what you had is in {student_package.folder() / 'old'}")
 
 
 def _keep(source, wanted, remark):
@@ -71,7 +71,7 @@ def _keep(source, wanted, remark):
     except (OSError, lab_book.LabBookError) as error:
         return _show("right", wanted.name, f"right, but it could not be kept: {error}")
     more = f" {', '.join(lent)}, which it calls, came along on loan: write your own." if lent else ""
-    more += f" Your finished {wanted.function} was put aside, into my_robot/old: check it again last." if whole else ""
+    more += f" Your finished {wanted.function} was moved to my_robot/old: check it again last." if whole else ""
     kind = "class" if isinstance(wanted.reference, type) else "function"
     text = f"right, and yours: from now on my_robot.{wanted.function} is this {kind}.{more} {remark}".rstrip()
     return _show("right", wanted.name, text, _beside(source, wanted))

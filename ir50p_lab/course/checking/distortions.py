@@ -31,7 +31,7 @@ def _of_arguments(task):
         for says, change in _readings(name, np.asarray(value)):
             yield Mistake(_reading(task, k, change), says)
         one = f"{name} = {value}" if np.ndim(value) == 0 else f"one {name}"
-        yield Mistake(_reading(task, k, lambda _, value=value: value), f"{one} is built in, whatever comes in")
+        yield Mistake(_reading(task, k, lambda _, value=value: value), f"{one} is built in, whatever is passed in")
     for k in range(len(case)):
         for m in range(k):
             if np.shape(case[k]) == np.shape(case[m]) and not (callable(case[k]) or callable(case[m])):
@@ -148,8 +148,8 @@ def entries(task, cases, returned, expected):
     if not 0 < len(wrong) <= min(3, math.prod(shape) // 3):
         return ""
     if len(wrong) == 2 and all(_alike(task, found[:, *a], right[:, *b]) for a, b in (wrong, wrong[::-1])):
-        return f"all is right but {_name(task, wrong[0])} and {_name(task, wrong[1])} have changed places"
-    return "all is right but " + "; ".join(_entry(task, place, cases, found, right) for place in wrong)
+        return f"all is right except that {_name(task, wrong[0])} and {_name(task, wrong[1])} have changed places"
+    return "all is right except that " + "; ".join(_entry(task, place, cases, found, right) for place in wrong)
 
 
 def _entry(task, place, cases, found, right):
@@ -158,7 +158,7 @@ def _entry(task, place, cases, found, right):
         return f"{name} has the wrong sign"
     if np.ptp(numbers) == 0:
         return f"{name} is always {numbers[0]:g}"
-    belonging = {f"what belongs into {_name(task, other)}": right[:, *other] for other in np.ndindex(right.shape[1:])}
+    belonging = {f"what belongs in {_name(task, other)}": right[:, *other] for other in np.ndindex(right.shape[1:])}
     for what, values in (_arguments(task, cases) | belonging).items():
         for sign, words in ((1, ""), (-1, "minus ")):
             if _alike(task, numbers, sign * values):

@@ -20,9 +20,9 @@ def why_it_stops(error):
     said = f"Python says {type(error).__name__}: {error}"
     reason = memory or _usual(error)
     if isinstance(error, IndexError) and re.search(r"\[[^],]*:[^],]*\]\[", line) and "size 0" not in str(error):
-        reason = "a slice leaves rows, and the next bracket counts rows again: row and column stand in one bracket"
+        reason = "a slice leaves rows, and the next bracket counts rows again: row and column belong in one bracket"
     if line.startswith("raise"):
-        reason = "it is asked for an answer there, too, not for an error"
+        reason = "an answer is wanted there, too, not an error"
     place = f" in `{line}`" if line else ""
     if not reason:
         return f"it stops{place}. {said}"
@@ -59,7 +59,7 @@ def _memory(error, line, frame):
     me, text, says = frame.f_locals["self"], "".join(linecache.getlines(frame.f_code.co_filename)), str(error)
     empty = (f"self.{name}" for name, value in getattr(me, "__dict__", {}).items() if value is None)
     if "NoneType" in says and (one := next((one for one in empty if re.search(rf"{one}\b", line)), "")):
-        return f"in the first step {one} is still None. Is it asked first, `if {one} is not None:`?"
+        return f"in the first step {one} is still None. Is that checked first, `if {one} is not None:`?"
     name = next(iter(re.findall(r"'(\w+)'", says)[-1:]), "")
     again = isinstance(error, UnboundLocalError) and hasattr(me, name) and line.startswith(name)
     if again or (getattr(error, "obj", text) is me and re.search(rf"(?m)^\s+{name} = ", text)):

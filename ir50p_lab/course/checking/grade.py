@@ -117,7 +117,7 @@ def _whole_arguments(trial):
     arguments = zip(trial.task.signature, trial.cases[whole[0]], strict=True)
     name = next(name for name, value in arguments if _is_whole_array(value))
     return (
-        f"it is right but where `{name}` holds whole numbers: an array made from it (`np.zeros_like({name})`, "
+        f"it is right except where `{name}` holds whole numbers: an array made from it (`np.zeros_like({name})`, "
         f"`{name}.copy()`) holds whole numbers only and cuts off what is put in; `np.zeros(3)`, `{name}.astype(float)` "
         "do not"
     )
@@ -269,7 +269,7 @@ def _by_a_constant(returned, expected):
                 f"it is nearly right, all is {factor:.6g} times what it should be: is a constant in it rounded, or "
                 "written by hand?"
             )
-        return f"every number is {factor:.4g} times what it should be: is a factor too many or missing, a unit another?"
+        return f"every number is {factor:.4g} times what it should be: is a factor extra or missing, or a unit another?"
     if np.ptp(one - other) < 1e-9 * np.abs(other).max():
         return f"every number is off by the same {np.mean(one - other):.4g}"
     return ""

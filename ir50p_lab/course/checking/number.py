@@ -36,7 +36,7 @@ class Number:
     mistakes: {what to say: a typical wrong answer, or a function of the right one (np.negative)}.
     unit: what the numbers are in, "rad", "m", "N m"; "" for none or several.
     angle: the entries are angles in rad, equal modulo 2 pi.
-    hint: said to a wrong answer that is no known mistake.
+    hint: said to a wrong answer that is not a known mistake.
     """
 
     name: str

@@ -12,7 +12,7 @@ def kind_of(returned):
     except (TypeError, ValueError):
         kind = type(returned).__name__
         if isinstance(returned, tuple | list):
-            return f"it returns a {kind} of {len(returned)} things that make no array: one array is asked for"
+            return f"it returns a {kind} of {len(returned)} things that do not make an array: one array is wanted"
         return f"it returns {kind} that cannot be read as an array of numbers: {str(returned)[:60]!r}"
     return ""
 
@@ -26,12 +26,12 @@ def no_numbers(returned, expected):
     array, wanted = np.asarray(returned, dtype=float), np.shape(expected)
     if array.shape != wanted:
         if array.size == np.size(expected) and np.allclose(array.ravel(), np.ravel(expected)):
-            return f"the numbers are right, their shape is not: {array.shape}, expected is {wanted}"
+            return f"the numbers are right, but their shape is not: {array.shape}, expected is {wanted}"
         if array.shape[1:] == wanted and array.ndim > 1:
-            return f"it returns {len(array)} arrays where one is asked for"
+            return f"it returns {len(array)} arrays where one is wanted"
         return f"it returns an array of shape {array.shape}; expected is {wanted}"
     if not np.isfinite(array).all() and np.isfinite(np.asarray(expected, dtype=float)).all():
-        return "it returns a number that is not finite (nan or inf): a division by zero, a root of less than nothing?"
+        return "it returns a number that is not finite (nan or inf): a division by zero, the root of a number below 0?"
     return ""
 
 

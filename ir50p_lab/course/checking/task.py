@@ -173,7 +173,7 @@ class Task:
         )
 
     def agrees(self, returned, expected):
-        """Tell whether what came back is what was expected; what is no answer is not."""
+        """Tell whether what came back is what was expected; what is not an answer is not."""
         try:
             if not self.results:
                 return _is_same(returned, expected, self.compare, self.tolerance)

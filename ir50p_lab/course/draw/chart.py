@@ -1,6 +1,6 @@
 """Curves over time as a picture of lines (SVG), which Python writes in some milliseconds: no figure is drawn.
 
-Every picture holds all that is to be seen: a browser that leaves some out is right again with the next one, and a page
+Every picture holds all that is shown: a browser that leaves some out is right again with the next one, and a page
 without a kernel keeps the last.
 """
 

@@ -27,7 +27,7 @@ class PictureView(widgets.VBox):
         alt: what the picture shows, for those who do not see it. source: where it is from, in words.
 
     Attributes: picture, and circles, (x, y, radius, colour) each, px: setting one of them shows it; canvas; status.
-    Raises InputError for what is no picture.
+    Raises InputError for what is not a picture.
     """
 
     def __init__(self, picture, on_click=None, alt="A picture", source=STAMP, circles=()):

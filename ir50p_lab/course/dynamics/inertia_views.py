@@ -43,7 +43,7 @@ class InertiaView:
 
 
 def centres(arm, q, places):
-    """The arm from the side and a dot for each of places (3, 3) m, a row a link: LabFigure (Figure 1.10)."""
+    """The arm from the side and a dot for each of places (3, 3) m, a row for each link: LabFigure (Figure 1.10)."""
     figure, plane = subplots(6.4, 4.6)
     SideView(plane, arm, q)
     radius = places[:, :2] @ [np.cos(q[0]), np.sin(q[0])]

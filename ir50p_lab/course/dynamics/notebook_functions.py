@@ -10,7 +10,7 @@ from ir50p_lab.modelling import forward_dynamics, gravity, inverse_dynamics, loa
 
 
 def centres(T, lc):
-    """Centres of mass of the three links, (3, 3) m, a row a link."""
+    """Centres of mass of the three links, (3, 3) m, a row for each link."""
     along = T[0][:3, 2], T[2][:3, 0], T[3][:3, 0]
     return np.array([T[k][:3, 3] + lc[k] * along[k] for k in range(3)])
 
@@ -96,7 +96,7 @@ def _states(arguments):
 
 TASKS = notebook_tasks(
     __file__,
-    centres=(centres, _places, "the three centres, (3, 3), a row a link", {"unit": "m"}),
+    centres=(centres, _places, "the three centres, (3, 3), a row for each link", {"unit": "m"}),
     heaviness=(heaviness, _tips, "kilograms; np.inf where nothing starts", {"tolerance": 1e-6, "unit": "kg"}),
     shoulder_holds=(shoulder_holds, _loads, "the torque of the shoulder, N m", {"tolerance": 1e-6, "unit": "N m"}),
     lump_torque=(lump_torque, lambda: _states(2), "three torques, N m", {"tolerance": 1e-4, "unit": "N m"}),

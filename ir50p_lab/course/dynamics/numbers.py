@@ -26,8 +26,8 @@ NUMBERS = (
         because="nobody cuts half a tooth",
         why="The rotor, seen through that gear, is as heavy as the load: half of the torque turns the motor itself.",
         mistakes={
-            "That is load by rotor, which is N^2: which gear has that square?": _BEST**2,
-            "That is next to nothing: is it upside down, rotor by load? The motor turns faster than the joint.": 1
+            "That is load over rotor, which is N^2: which gear has that square?": _BEST**2,
+            "That is next to nothing: is it upside down, rotor over load? The motor turns faster than the joint.": 1
             / _BEST,
             "There the rotor counts twice as much as the load: set the slope to zero once more.": _BEST * np.sqrt(2),
         },

@@ -87,12 +87,12 @@ class FeedbackView:
 def kept_motion(arm, number=0):
     """A Fourier motion of 110 s to identify from (number 0), or another one to validate with (1 to 20).
 
-    An optimiser ends elsewhere on another processor, so the IR50P has its motions in data/excitation_ir50p.json. For
+    An optimiser ends up elsewhere on another processor, so the IR50P has its motions in data/excitation_ir50p.json. For
     another arm they are optimised here, briefly.
     """
     if arm == IR50P:
         return load_excitations()[f"validation {number}" if number else "training"]
     speed = 0.8 * arm.actuators.no_load_speed
-    # room at the limits and over the table: the thesis' PID lags and sags
+    # room at the limits and over the table: the thesis's PID lags and sags
     options = {"margin": 0.2, "table": 0.1, "standing": 6, "tries": 1000, "seed": number, "progress": False}
     return optimise_excitation(arm, harmonics=3, max_joint_speed=speed, **options).reference

@@ -52,7 +52,7 @@ def main(arguments=None):
         prog="python3 -m ir50p_lab grade",
         description="Check what a class has handed in, the ZIPs of 'pack' or folders: a table and a page.",
     )
-    parser.add_argument("folder", type=Path, metavar="FOLDER", help="where the hand-ins lie")
+    parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder with the hand-ins")
     parser.add_argument("--to", type=Path, default=Path("."), metavar="FOLDER", help="where table and page go")
     options = parser.parse_args(arguments)
     try:

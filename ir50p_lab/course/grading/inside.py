@@ -1,7 +1,7 @@
 """Inside the process of one student: functions come in as JSON, are checked by the engine of `check`, verdicts go out.
 
 Each function is judged with the course's own in place of the earlier ones that it calls: what is wrong there serves
-nobody here. The verdict is made where the student's code runs, so who gets past the gate can forge his own.
+nobody here. The verdict is made where the student's code runs, so whoever gets past the gate can forge one.
 """
 
 import json
@@ -32,7 +32,7 @@ def verdict(name, text):
     try:
         source = cut(text, name, wanted.leans_on, wanted.given, wanted.function_arguments)
         if has_dots(source.text):
-            return "open", "dots still stand in it"
+            return "open", "there are still dots in it"
         _allow(SECONDS)
         found = grade(wanted, source)
         return found.state, found.says

@@ -34,11 +34,11 @@ def judged(hand_in_of, arms=3, *, seeds=None, seconds=SECONDS):
 
     hand_in_of: unknown_arm, a function of the notebook, or the path of a file; beside its folder, or in it, may lie the
     functions, `my_robot`. seeds: of the arms, default secret ones. seconds: for each arm, by the clock.
-    Raises InputError for what is no hand-in.
+    Raises InputError for what is not a hand-in.
     """
     path = hand_in(hand_in_of) if callable(hand_in_of) else Path(hand_in_of)
     if not path.is_file():
-        raise InputError(f"'{path}' is no file: give the one that `unknown_arm` stands in")
+        raise InputError(f"'{path}' is not a file: give the one that holds `unknown_arm`")
     seeds = seeds or [secrets.randbits(128) for _ in range(whole("arms", arms, 1, 1000))]
     with TemporaryDirectory() as room, ThreadPoolExecutor(os.cpu_count()) as pool:
         folder = _moved_in(path, Path(room))

@@ -21,7 +21,7 @@ def isolation():
     if bubblewrap():
         return "Each student's functions run inside bubblewrap: no network, nothing of this machine written, limits."
     limits = "a limit of time" if os.name == "nt" else "limits of time, memory, processes and files"
-    return f"bubblewrap is not here: each student's functions run in a process of their own, with {limits}."
+    return f"bubblewrap is not available here: each student's functions run in a process of their own, with {limits}."
 
 
 def bubblewrap():

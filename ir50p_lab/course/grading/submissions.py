@@ -36,10 +36,10 @@ class Submission:
 
 
 def submissions(folder):
-    """All that lies in a folder, sorted by name: ZIPs, and folders with my_robot or notebooks in them."""
+    """All that is in a folder, sorted by name: ZIPs, and folders with my_robot or notebooks in them."""
     folder = Path(folder)
     if not folder.is_dir():
-        raise InputError(f"'{folder}' is no folder: give the one in which the hand-ins of the class lie")
+        raise InputError(f"'{folder}' is not a folder: give the one that holds the hand-ins of the class")
     found = [path for path in sorted(folder.iterdir()) if path.suffix.lower() == ".zip" or _home(path)]
     if not found:
         raise InputError(f"'{folder}' holds no hand-ins: neither ZIPs nor folders with my_robot in them")
@@ -71,7 +71,7 @@ def _of_folder(folder):
         if not path.exists():
             return None
         if not path.resolve().is_relative_to(home) or not path.is_file():
-            raise _Refused(f"{name} is no plain file of the hand-in's own")
+            raise _Refused(f"{name} is not a plain file of the hand-in's own")
         with path.open("rb") as file:
             return _text(file, name, most)
 

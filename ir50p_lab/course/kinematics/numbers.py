@@ -31,7 +31,7 @@ NUMBERS = (
         because="a millimetre is what this arm can resolve",
         why="It is the last column of the inverse: -R^T t, the way back, measured along the axes of {B}.",
         mistakes={
-            "That is -t, still measured along the axes of {A}; the answer wants those of {B}.": -_T,
+            "That is -t, still measured along the axes of {A}; the answer needs those of {B}.": -_T,
             "That is -R t; coordinates of {A} go to {B} with the transposed matrix.": -_R @ _T,
             "That points from {A} to {B}; the question is where {A} lies, seen from {B}.": _R.T @ _T,
             "The angle went in as 90 rad; the functions take radians.": -rot_z(90.0).T @ _T,

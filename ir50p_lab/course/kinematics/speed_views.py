@@ -1,4 +1,4 @@
-"""Pictures of notebook 03: arrows of the joints, the way out, where not, steps to a place."""
+"""Pictures of notebook 03: arrows of the joints, the way out, where joints are too slow, steps to a place."""
 
 import numpy as np
 from matplotlib.patches import Circle
@@ -48,7 +48,7 @@ class ColumnsView:
 
 
 def arrows(arm, q, J):
-    """The arm at q and the columns of J (3, 3) m/rad at its tip, an arrow a joint: LabFigure."""
+    """The arm at q and the columns of J (3, 3) m/rad at its tip, an arrow for each joint: LabFigure."""
     figure, ax = subplots(7.5, 5.0, projection="3d")
     ColumnsView(ax, arm, aside=0.02).update(q, J)
     ax.set_title("Where the tip goes if joint 1, 2 or 3 turns (arrows drawn at half length)")
@@ -58,7 +58,7 @@ def arrows(arm, q, J):
 def arrows_panel(arm):
     """The same for any shoulder and elbow, for `live`: figure, f(q2, q3) in degrees -> sentence."""
     figure, ax = subplots(7.5, 5.2, projection="3d")
-    ax.set_title("One arrow a joint: its share of the tip's velocity")
+    ax.set_title("One arrow for each joint: its share of the tip's velocity")
     columns = ColumnsView(ax, arm)
 
     def turn(q2, q3):

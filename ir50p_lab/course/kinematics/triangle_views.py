@@ -81,7 +81,7 @@ def triangles(arm, p, *, back=False):
             _length(ax, foot, tip, "across", 0.04 * along)
     ax.axhline(shoulder[1], color=COLOURS["grey"], linewidth=1)
     arc(ax, shoulder, 0, gamma, 0.2, "green", r"$\gamma$", 1.12)
-    ax.set_title("The waist looks right, the place lies left" if back else "One triangle, folded over: two elbows")
+    ax.set_title("The waist faces right, the place is on the left" if back else "One triangle, folded over: two elbows")
     return figure
 
 

@@ -1,4 +1,4 @@
-"""Where the files lie that come with the course: pictures, recordings, tables."""
+"""Where the files that come with the course are: pictures, recordings, tables."""
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import PROJECT

@@ -1,4 +1,4 @@
-"""What stands behind the name of a prediction or a figure, in words: names.txt."""
+"""What the name of a prediction or a figure means, in words: names.txt."""
 
 from functools import cache
 from pathlib import Path

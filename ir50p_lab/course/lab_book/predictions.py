@@ -9,7 +9,7 @@ from ir50p_lab.course.lab_book.student_file import LabBookError, read_json, writ
 
 
 def path():
-    """Where the lab book lies: results/lab_book.json in the student's folder."""
+    """Where the lab book is: results/lab_book.json in the student's folder."""
     return home.home() / "results" / "lab_book.json"
 
 
@@ -70,7 +70,7 @@ def measured(name, value, unit="", by=""):
     try:
         value = float(value)
     except (TypeError, ValueError):
-        raise LabBookError(f"{name}: what is measured is one number, got {value!r:.60}") from None
+        raise LabBookError(f"{name}: a measured value is one number, got {value!r:.60}") from None
     if by not in ("", "yours"):
         print(f"{name}: {_say(value, unit)} ({by}: not written down)")
         return
@@ -116,7 +116,7 @@ def partners(*names):
         book["partners"] = names or book["partners"]
         return book["partners"]
 
-    print("This lab book is of", " and ".join(change(edit)) or 'nobody yet: partners("A. Name", "B. Name")')
+    print("This lab book belongs to", " and ".join(change(edit)) or 'nobody yet: partners("A. Name", "B. Name")')
 
 
 def note(text):
@@ -134,7 +134,7 @@ def helped_by(text):
 
 def _keep_text(where, text, asked):
     text = str(text).strip()
-    if text in ("", "..."):
+    if not text or text.endswith("..."):
         print(f"{asked} between the quotation marks, then run the cell.")
         return
     change(lambda book: text in (one["text"] for one in book[where]) or book[where].append({"text": text, "at": now()}))
@@ -158,7 +158,7 @@ def keep(figure, name):
 
 
 def _refusal(guess, unit, more, choices):
-    """Say why this is no prediction; "" for one that is."""
+    """Say why this is not a prediction; "" for one that is."""
     if more or not isinstance(unit, str) or "," in str(guess):
         return "a decimal comma? Python takes 0,35 for two numbers: write 0.35. Nothing was written down."
     asked = f"one of {', '.join(map(str, choices))}" if choices else f"one number ({unit})" if unit else "one number"
@@ -170,7 +170,7 @@ def _refusal(guess, unit, more, choices):
         number = math.nan
     if math.isfinite(number) and (not choices or number in choices):
         return ""
-    return f"{guess!r:.40} is no answer, so it does not count: give {asked}."
+    return f"{guess!r:.40} is not an answer, so it does not count: give {asked}."
 
 
 def _take_guess(entry, guess, unit, within):

@@ -10,7 +10,7 @@ _VARIABLE = "IR50P_PROGRESS"
 
 
 def progress_path() -> Path:
-    """Return where the progress file lies: $IR50P_PROGRESS, else progress.json in the student's folder."""
+    """Return where the progress file is: $IR50P_PROGRESS, else progress.json in the student's folder."""
     return home.path_setting(_VARIABLE) or home.home() / "progress.json"
 
 

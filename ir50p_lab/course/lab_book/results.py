@@ -38,7 +38,7 @@ def save_result(kind, value, more=None, measured_on=None):
         `more`; None: rendered pictures of a camera, the simulated arm of your own theta.
 
     From a board without an id nothing is kept; the line says so. Raises InputError for another kind, a theta or errors
-    of another shape, for a T_base_cam that is no rigid transform, and if it cannot be written.
+    of another shape, for a T_base_cam that is not a rigid transform, and if it cannot be written.
     """
     _check(kind)
     if hasattr(more, "header") or hasattr(more, "bench_id"):
@@ -108,8 +108,8 @@ def newest_result(kind, bench):
 def results(*, choose=None, withdraw=None):
     """Your results as a table, the one that counts for its bench marked.
 
-    Args: choose: name of a result that is to count from now on, whatever is newer; withdraw: name of one that is not
-    to count any more (`choose` takes it back). Returns: pandas.DataFrame.
+    Args: choose: name of a result that counts from now on, whatever is newer; withdraw: name of one that does not
+    count any more (`choose` takes it back). Returns: pandas.DataFrame.
     """
     import pandas as pd
 
@@ -216,7 +216,7 @@ def _read(found):
         fields = {name: np.array(value) if name in arrays else value for name, value in listed.items()}
         return Estimate(**{name: _tuples(value) for name, value in fields.items()})
     except (OSError, ValueError, TypeError, RecursionError) as error:
-        raise InputError(f"{found.path} is no model ({error!r:.80}): results(withdraw={found.name!r})") from None
+        raise InputError(f"{found.path} is not a model ({error!r:.80}): results(withdraw={found.name!r})") from None
 
 
 def _tuples(value):

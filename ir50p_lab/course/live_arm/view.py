@@ -52,7 +52,7 @@ class LiveArm(anywidget.AnyWidget):
         in the browser. frames: f(q) -> (4, 4, 4), transforms of frames 0 to 3 to the base: the arm is drawn by them,
         wrong ones too. badge: whose code moves the arm, 'yours' or "the course's"; by default told from them.
         layers: which of table, shadow, trail, frames, joint axes, velocity ellipsoid, force ellipsoid, ball are shown
-        at first. ball: (p, radius) m. height: CSS pixels; sliders: of the joints.
+        at first. ball: (p, radius) m, p (3,) or, of several, (n, 3). height: CSS pixels; sliders: of the joints.
         in_space: without table, stops and set point, for motions that know none of them.
 
     Attributes: q, list of rad, in both directions; layers.
@@ -75,9 +75,9 @@ class LiveArm(anywidget.AnyWidget):
                  height=420, sliders=True, in_space=False):  # fmt: skip
         self.arm, self._on_drag, self._frames = arm, on_drag, frames
         self._stop = threading.Event()
-        ball = None if ball is None else (vectors3("ball", ball[0], unit="m"), float(ball[1]))
+        ball = None if ball is None else (vectors3("ball", ball[0], unit="m").reshape(-1, 3), float(ball[1]))
         options = {
-            "lengths": lengths(arm),  # refuses what is no Arm
+            "lengths": lengths(arm),  # refuses what is not an Arm
             "limits": np.clip([arm.q_min, arm.q_max], -np.pi, np.pi).T,
             "badge": badge or badge_of(on_drag or frames),
             "drag": "browser" if on_drag is None else "kernel",
@@ -231,7 +231,7 @@ def still_png(view):
         if view.track and "trail" in view.layers:
             arm.trail(forward_kinematics(view.arm, view._shown.q))
         if view.options["ball"]:
-            ax.scatter(*view.options["ball"][0], s=230, color="#C8102E")
+            ax.scatter(*np.transpose(view.options["ball"][0]), s=230, color="#C8102E")
         if view.poses:
             if "frames" in view.layers:
                 ax.view_init(elev=22, azim=-30)  # no axis hides another

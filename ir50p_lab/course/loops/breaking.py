@@ -3,7 +3,7 @@
     run = broken("A")
     name_it("A", "windup")
 
-Simulated, on the arm of the course; case C on the thesis' own arm, whose gains it is about.
+Simulated, on the arm of the course; case C on the thesis's own arm, whose gains it is about.
 """
 
 import tomllib
@@ -45,7 +45,7 @@ class Late:
 
 
 def far_target(arm):
-    """The thesis' set point, where the arm's travel allows it, (3,) rad."""
+    """The thesis's set point, where the arm's travel allows it, (3,) rad."""
     return np.clip(THESIS_TARGET, 0.9 * np.array(arm.q_min), 0.9 * np.array(arm.q_max))
 
 
@@ -72,7 +72,7 @@ def kick(arm, *, cured=False):
 
 
 def sampling(arm, *, period=0.01):
-    """The thesis' arm with its gains, the command (N m, at most 330) held for `period` s."""
+    """The thesis's arm with its gains, the command (N m, at most 330) held for `period` s."""
     pid = PID(THESIS_KP, kd=THESIS_KD, limit=330, period=period, filter_hz=np.inf)
     return simulate(THESIS_A, pid, THESIS_TARGET, duration=2, period=period, step=min(period, 0.0005))
 

@@ -45,7 +45,7 @@ _MOMENT = 10  # samples over which the swing of the command is taken: holding a 
 
 @dataclass(frozen=True)
 class Draw:
-    """One arm of the contest: poses (3, 3) rad held from TIMES on; payload kg at the tip; copy of the series."""
+    """One arm of the contest: poses (3, 3) rad held from the TIMES; payload kg at the tip; copy of the series."""
 
     poses: np.ndarray
     payload: float

@@ -38,7 +38,7 @@ NUMBERS = (
         tolerance=0.01,
         why="One joint decides, here the shoulder; the others have time to spare. 07 asks in counts.",
         mistakes={
-            "That is for an even speed: half way a quintic is faster.": np.max(_TIMES) * 8 / 15,
+            "That is for an even speed: halfway a quintic is faster.": np.max(_TIMES) * 8 / 15,
             "That is the waist's time; all three have to keep their speed.": _TIMES[0],
             "That is the elbow's time; another joint needs longer.": _TIMES[2],
             "The joints move at the same time: their times are not added.": np.sum(_TIMES),

@@ -14,13 +14,13 @@ def motion(t, x, last=None):
 
 
 def one_step():
-    """One step along a curve: by the rate at its start, and by the rate half way: LabFigure."""
+    """One step along a curve: by the rate at its start, and by the rate halfway: LabFigure."""
     figure, ax = subplots(7.5, 3.6)
     t = np.linspace(-0.15, 1.25, 100)
     ax.plot(t, np.exp(t), color=COLOURS["grey"], label="the curve, which nobody knows")
     ax.plot([0, 1], [1, 2], "o-", label="by the rate at the start: too low")
-    ax.plot([0.25, 0.75], [1.125, 1.875], color=COLOURS["dark"], linewidth=3, label="the rate half way, asked there")
-    ax.plot([0, 1], [1, 2.5], "o-", color=COLOURS["orange"], label="by the rate half way")
+    ax.plot([0.25, 0.75], [1.125, 1.875], color=COLOURS["dark"], linewidth=3, label="the rate halfway, asked there")
+    ax.plot([0, 1], [1, 2.5], "o-", color=COLOURS["orange"], label="by the rate halfway")
     ax.set(xlabel="time, in steps [1]", ylabel="x [1]", title="One step: which rate?")
     ax.legend(fontsize=9)
     return figure
@@ -51,7 +51,7 @@ def bill_panel():
     def update(seconds, shares):
         for line, share in zip(lines, shares.T, strict=True):
             line.set_data(np.linspace(0, seconds, len(share)), share)
-        ax.set_title(f"In {seconds:.2f} s: up to {100 * np.max(np.abs(shares)):.0f} % of what a motor can")
+        ax.set_title(f"In {seconds:.2f} s: up to {100 * np.max(np.abs(shares)):.0f} % of what a motor can give")
 
     return figure, update
 

@@ -150,7 +150,7 @@ I_N3 = Matrix([[Izz3,  -Ixy3, -Ixz3],                      # wrong: the diagonal
 
 # ---- a. mass matrix: the three summands and the list ----
 
-SUMMAND_1_FIRST = diag(m1 * lc1 + Izz1, 0, 0)              # wrong: lc1 not squared; right in the thesis' next line
+SUMMAND_1_FIRST = diag(m1 * lc1 + Izz1, 0, 0)              # wrong: lc1 not squared; right in the thesis's next line
 SUMMAND_2 = Matrix([[m2 * lc2**2 * c2 + Izz2, Iyz2,               0],   # wrong: c2 not squared, Iyz2 lost in (2,1)
                     [0,                       m2 * lc2**2 + Iyy2, 0],
                     [0,                       0,                  0]])

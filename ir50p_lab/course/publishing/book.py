@@ -1,7 +1,7 @@
 """The course as a book: the pages of `export` with a bar, a search and a reference. `python3 -m ir50p_lab book`.
 
-The notebooks are run as they lie, each in a home of its own: a page shows what a reader meets who has written nothing
-yet. A copy that was run is used again until its notebook or the package changes.
+The notebooks are run as they are, each in a home of its own: a page shows what readers meet who have written
+nothing yet. A copy that was run is used again until its notebook or the package changes.
 """
 
 import argparse

@@ -124,7 +124,7 @@ def true_tip(bench):
 
 
 def on_copies(reach_for, arm, copies, ball, *, calibrated=False, knocked=(0, 0, 0)):
-    """What `reach_for(bench, camera)` gives on copies of the simulated arm, one row a copy: an array.
+    """What `reach_for(bench, camera)` gives on copies of the simulated arm, one row for each copy: an array.
 
     copies: their numbers; ball: (3,) m; calibrated: with the potentiometers of each copy calibrated as in 10;
     knocked: (3,) degrees, by which its camera is turned about its own axes, and nobody has noticed.

@@ -28,7 +28,7 @@ NUMBERS = (
             "That is the lever of joint 3: columns of the Jacobian count joints.": (
                 1e3 * float(np.linalg.norm(jacobian(IR50P, _Q)[:3, 2])) / _SLOPE
             ),
-            "That is in metres; asked for are millimetres.": _LEVER / _SLOPE,
+            "That is in metres; millimetres are wanted.": _LEVER / _SLOPE,
         },
         hint="The column of joint 2 in jacobian(IR50P, q), its first three rows, and its length.",
     ),

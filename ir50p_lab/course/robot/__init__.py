@@ -1,1 +1,1 @@
-"""What the student owns: which functions, in which order, where they lie, and the arm they are about."""
+"""What the student owns: which functions, in which order, where they are kept, and the arm they are about."""

@@ -34,7 +34,7 @@ def parts(arm: Arm) -> Parts:
     """Return the numbers of an arm as the student's functions take them.
 
     `Arm` measures link 1 with z along the column and link 3 with z along its joint; the DH frames at the ends of these
-    links have y there (alpha = +90 and -90 deg), so that Iyy and Izz of links 1 and 3 change places.
+    links have y there (alpha = +90 and -90 deg), so that Iyy and Izz of links 1 and 3 are exchanged.
 
     An arm without motors has no rotors and no back-EMF, 0, and no gain, nan.
     """

@@ -34,6 +34,7 @@ IN_NOTEBOOK = {  # functions that stay in their notebook, and the room in which 
     **dict.fromkeys(("carry", "cancel", "model", "pushes", "into", "planned"), "torque"),
     "nearest": "reaching",
     "best_circle": "images",
+    **dict.fromkeys(("both_ways", "acted", "fit_joint", "most_counts", "when_it_acts", "camera_at"), "unknown"),
 }
 _at = {}  # stage of each function that this session works on
 

@@ -21,7 +21,7 @@ lookup_cache = {}  # what `my_robot` has just looked up; empty when a function w
 
 
 def folder() -> Path:
-    """Where the student's functions lie: `my_robot` in the student's folder."""
+    """Where the student's functions are: `my_robot` in the student's folder."""
     return home.home() / "my_robot"
 
 

@@ -1,4 +1,4 @@
-"""Notebook 14: the ball's way, runs along it, how far the tip is beside it; and P and D with a push beside them."""
+"""Notebook 14: the ball's way, runs along it, how far off it the tip is; and P and D with a push beside them."""
 
 import numpy as np
 

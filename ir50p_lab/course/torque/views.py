@@ -1,4 +1,4 @@
-"""Notebooks 14 and 15: the map of robustness, the thesis' PID and model, and how late a joint is."""
+"""Notebooks 14 and 15: the map of robustness, the thesis's PID and model, and how late a joint is."""
 
 import numpy as np
 from matplotlib.colors import LogNorm
@@ -17,7 +17,7 @@ def thesis_pid():
 
 
 def training_run(arm, *, seed=0):
-    """A recording to identify from, on the simulated bench: the first motion of notebook 13, thesis' PID."""
+    """A recording to identify from, on the simulated bench: the first motion of notebook 13, thesis's PID."""
     return simulated(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
 
 

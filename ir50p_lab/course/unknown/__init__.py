@@ -5,6 +5,9 @@ from ir50p_lab import lazy
 __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
+        "far_bench": ["FarBench"],
+        "notebook_functions": ["camera_at"],
+        "race_day": ["Raced"],
         "robot": [
             "COLUMNS",
             "OnLegs",
@@ -13,8 +16,8 @@ __getattr__, __dir__, __all__ = lazy.attach(
             "find_balls",
             "motion",
             "plan",
-            "there_and_back",
             "with_a_pull",
         ],
+        "world": ["World"],
     },
 )

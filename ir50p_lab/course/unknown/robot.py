@@ -8,7 +8,7 @@ import numpy as np
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.images.notebook_functions import edges_of, with_neighbours
 from ir50p_lab.course.torque.bench_views import Rate  # noqa: F401  (of the error, as in 15)
-from ir50p_lab.course.unknown.notebook_functions import both_ways, with_a_pull  # noqa: F401
+from ir50p_lab.course.unknown.notebook_functions import with_a_pull  # noqa: F401
 
 #: Of the twenty columns of the regressor those that each joint can tell apart in its own motion.
 COLUMNS = [0, 1, 4, 5, 10, 11, 16], [1, 2, 3, 4, 5, 8, 9, 12, 13, 17], [3, 4, 5, 9, 14, 15, 18, 19]
@@ -20,14 +20,12 @@ _EVERY, _EDGE = 4, 100  # samples
 _VIA = np.array([0, 0.16, 0])  # rad: higher in the middle
 
 
-def there_and_back(x):
-    """A signal (n,) low-passed at 2 Hz by the student's `low_pass`, forwards and backwards: it is not late."""
-    return both_ways(x, my_robot.low_pass)
+def motion(recording, both_ways):
+    """What a recording tells: Y (n, 3, 20) by the student's regressor, moving (n, 3) bool, the rows to use.
 
-
-def motion(recording):
-    """What a recording tells: Y (n, 3, 20) by the student's regressor, moving (n, 3) bool, the rows to use."""
-    q = np.apply_along_axis(there_and_back, 0, recording.q)
+    both_ways: the student's filter, of a signal (n,).
+    """
+    q = np.apply_along_axis(both_ways, 0, recording.q)
     qd = np.gradient(q, 0.01, axis=0)
     qdd = np.gradient(qd, 0.01, axis=0)
     direction = np.tanh(qd / _STILL)

@@ -12,16 +12,16 @@ from ir50p_lab.vision.ball.rays import ANGLES, cast
 _BIAS = 5.32  # log odds of a ball if all numbers are 0
 _AGAINST = (  # how much log odds 1 of each number takes away, and the reason given if it takes most
     (-2.3, "it is small"),
-    (4.43, "{:.0%} of the circle show no edge"),
-    (2.23, "{:.0%} of the circle lie outside the picture"),
-    (3.64, "{:.0%} of the disc have another colour"),
+    (4.43, "{:.0%} of the circle shows no edge"),
+    (2.23, "{:.0%} of the circle lies outside the picture"),
+    (3.64, "{:.0%} of the disc has another colour"),
     (2.84, "its outline is not round"),
     (2.28, "its hue is off by {:.2f} of the tolerance"),
     (1.16, "the colour goes on beyond {:.0%} of the circle"),
     (-1.55, "its rim differs from its middle"),
     (2.51, "it hardly stands out from its surroundings"),
 )
-_LEAST_SCORE = 0.65  # probability: if it is less, it is no ball. Higher: fewer false alarms, more balls missed
+_LEAST_SCORE = 0.65  # probability: if it is less, it is not a ball. Higher: fewer false alarms, more balls missed
 _LEAST_FILL = 0.55  # share of the disc: if less has the colour, or is too light to tell, it has another colour
 _GLARING = 242  # value, 0..255: of lighter pixels the hue tells little
 _DISC = np.arange(1, 10) / 10  # radii: where samples along a ray are taken inside the outline
@@ -33,12 +33,12 @@ _GLOSS = 0.35  # share of the disc: if highlights cover more, they are another c
 
 
 def judge(image, outline, colour):
-    """(score 0..1, why it is no ball or "") of an Outline in an RGB picture (h, w, 3)."""
+    """(score 0..1, why it is not a ball, or "") of an Outline in an RGB picture (h, w, 3)."""
     r, on = outline.radius, outline.on
     hsv, loose, filled, fill, beyond = _colours(image, outline, colour)
     why = _other_shape(outline, filled)
     if not loose.any() or (loose | (hsv[..., 2] > _GLARING)).mean() < _LEAST_FILL:
-        why = why or f"{1 - fill:.0%} of the disc have another colour"
+        why = why or f"{1 - fill:.0%} of the disc has another colour"
     why = why or _other_paint(hsv[loose], colour)
     if why:
         return 0.0, why

@@ -54,7 +54,7 @@ def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
         colour: Colour, default RED; camera: Pinhole or Calibration if known, else one without distortion is assumed
         that sees 58 degrees across; least_radius: px, smaller balls are refused.
 
-    Raises ImageError for what is no colour picture, InputError for a bad argument, CalibrationError for a picture of
+    Raises ImageError for what is not a colour picture, InputError for a bad argument, CalibrationError for a picture of
     another size than the camera's.
     """
     image = check_image(image)

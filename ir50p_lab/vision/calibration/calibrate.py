@@ -122,7 +122,7 @@ def _calibrate(found, points, size, lens, rejected, board):
         )
     covariance, sigma, contradiction = errors(fitted, lens)
     if contradiction > _CONTRADICT:
-        said.append("the views contradict each other: two cameras, or was zoom, focus or the board changed?")
+        said.append("the views contradict each other: two cameras, or was the zoom, the focus or the board changed?")
     parts = zip(found, fitted.points, fitted.residuals, fitted.poses, strict=True)
     views = tuple(
         View(name=name, index=index, points=p, corners=xy, residuals=e, T_cam_board=transform(*pose))

@@ -30,7 +30,7 @@ def warnings_about(found):
         yield f"the centre ({K[0, 2]:.0f}, {K[1, 2]:.0f}) is far from the middle: were the pictures cropped?"
     relative = max(found.stderr["fx"] / K[0, 0], found.stderr["fy"] / K[1, 1])
     if relative > 0.01:
-        yield f"the focal length is known to {100 * relative:.1f} % only: tilt the board more, take more views"
+        yield f"the focal length is known only to {100 * relative:.1f} %: tilt the board more, take more views"
     away = float(np.median([np.linalg.norm(view.T_cam_board[:3, 3]) for view in views]))
     if not 0.04 < away < 15:
         yield f"the board seems {away:.3g} m away: is square in metres? K and distortion do not depend on it"
@@ -45,4 +45,4 @@ def warnings_about(found):
     x, y = (np.concatenate([view.corners for view in views]) * (8, 6) / found.size).astype(int).T
     filled = len(set(zip(x, y, strict=True))) / 48
     if filled < 0.5:
-        yield f"corners fill {100 * filled:.0f} % of the picture only: hold the board into its corners, too"
+        yield f"corners fill only {100 * filled:.0f} % of the picture: hold the board in its corners, too"

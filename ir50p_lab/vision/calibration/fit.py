@@ -93,7 +93,7 @@ def fit_lens(points, pixels, size, lens):
     try:
         angle, fisheye = _fit_fisheye(points, pixels, size)
         again, full = (fit(points, pixels, size, names, fisheye.K) for names in (lens, LENS))
-    except (cv2.error, CalibrationError):  # it is no fisheye
+    except (cv2.error, CalibrationError):  # it is not a fisheye
         return fitted, ""
     fitted = min(fitted, again, key=lambda one: one.squares)
     ours, best, theirs = (np.median(one.view_rms) for one in (fitted, full, fisheye))

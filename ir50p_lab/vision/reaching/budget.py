@@ -20,8 +20,8 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
     Args: arm: Arm; locator: BallLocator; q: (3,) rad, pose over the ball; sigma_q: (3,) rad, standard deviation of the
     potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found centres; noise:
     counts rms of a reading before rounding.
-    Returns: pandas.DataFrame of rms distances at the tip, m, one row a cause, columns "one look" and "two looks". The
-    causes are independent, so squares add; the last row is "all together".
+    Returns: pandas.DataFrame of rms distances at the tip, m, one row for each cause, columns "one look" and "two
+    looks". The causes are independent, so squares add; the last row is "all together".
     """
     import pandas as pd
 

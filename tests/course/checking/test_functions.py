@@ -25,10 +25,6 @@ def give(name, text, notebook=()):
     check(name, cell(text, name, notebook))
 
 
-def test_the_list_is_that_of_the_solutions():
-    assert list(ORDER) == solutions.ORDER
-
-
 def test_reference_solutions_pass_become_the_robot_and_stand_alone(home, capsys):
     for name in ORDER:
         give(name, solutions.source(name))

@@ -145,7 +145,7 @@ def test_right_ones_of_any_shape_are_kept_and_run_alone(text, capsys):
         ("c = s = __import__('ir50p_lab.modelling').modelling.rot_z(angle)", "uses `__import__`"),
         ("exec('from ir50p_lab.modelling import rot_z as r', d := {}); c = s = d['r'](angle)", "uses `exec`"),
         ("c = s = np.__builtins__", "changes or opens"),
-        ("c = s = frames(angle, angle)", "calls `frames`: this function is to do without"),
+        ("c = s = frames(angle, angle)", "calls `frames`: this function has to do without it"),
     ],
 )
 def test_ways_round_the_task_are_refused(line, words, capsys):
@@ -272,4 +272,4 @@ def test_an_array_that_takes_its_kind_from_whole_angles_is_told(capsys, name):
         f"\n\n\ndef {name}(q, *others):\n    tau = np.zeros_like(q)\n    tau[:] = right(q, *others)\n    return tau\n"
     )
     said = told(capsys, name, text=text.replace(f"def {name}(", "def right(") + body)
-    assert "it is right but where `q` holds whole numbers" in said.replace("\n", " ")
+    assert "it is right except where `q` holds whole numbers" in said.replace("\n", " ")

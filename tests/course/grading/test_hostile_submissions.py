@@ -99,7 +99,7 @@ def test_a_link_out_of_a_folder_is_not_followed(tmp_path):
     (tmp_path / "class" / "eve" / "my_robot").mkdir(parents=True)
     (tmp_path / "class" / "eve" / "my_robot" / "_rot_z.py").symlink_to(tmp_path / "secret")
     (made,) = submissions(tmp_path / "class")
-    assert made.functions == {} and "no plain file" in made.trouble
+    assert made.functions == {} and "not a plain file" in made.trouble
 
 
 def test_a_forged_line_that_is_no_verdict_counts_for_nothing(monkeypatch):

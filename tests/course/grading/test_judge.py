@@ -49,7 +49,7 @@ def test_the_reference_finishes_on_three_arms():
 
 
 def test_a_file_that_is_not_there_is_told(tmp_path):
-    with pytest.raises(InputError, match="is no file"):
+    with pytest.raises(InputError, match="is not a file"):
         judged(tmp_path / "none.py")
 
 

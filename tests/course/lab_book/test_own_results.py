@@ -115,7 +115,7 @@ def test_a_camera_of_rendered_pictures_serves_simulated_arms_only(capsys):
     stands = np.diag([1.0, -1, -1, 1])
     save_result("camera", camera, stands)
     np.testing.assert_array_equal(load_result("camera", simulated(7)).T_base_cam, stands)
-    with pytest.raises(InputError, match="T_base_cam is no rigid"):
+    with pytest.raises(InputError, match="T_base_cam is not a rigid"):
         save_result("camera", camera, 2 * stands)
     with pytest.raises(NotMeasuredError, match="17_camera"):
         load_result("camera", real_bench())

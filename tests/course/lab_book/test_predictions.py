@@ -40,8 +40,8 @@ def test_a_guess_is_replaced_once_and_not_after_it_is_measured(capsys):
         ((0, 35), "write 0.35"),
         ((0, 35, "m"), "write 0.35"),
         (("0,35", "m"), "write 0.35"),
-        (("a lot", "m"), "'a lot' is no answer, so it does not count: give one number (m)"),
-        ((float("nan"), "m"), "nan is no answer"),
+        (("a lot", "m"), "'a lot' is not an answer, so it does not count: give one number (m)"),
+        ((float("nan"), "m"), "nan is not an answer"),
     ],
 )
 def test_what_is_no_prediction_is_refused_and_does_not_count(capsys, arguments, words):
@@ -52,7 +52,7 @@ def test_what_is_no_prediction_is_refused_and_does_not_count(capsys, arguments, 
 
 def test_a_choice_is_one_of_those_there_are(capsys):
     predict("level", 7, choices=(1, 2, 3))
-    assert said(capsys) == "level: 7 is no answer, so it does not count: give one of 1, 2, 3.\n"
+    assert said(capsys) == "level: 7 is not an answer, so it does not count: give one of 1, 2, 3.\n"
     predict("level", 3, choices=(1, 2, 3))
     measured("level", 3.001)  # as near as a number might be, and yet another choice
     assert 'why("level", "...")' in said(capsys)
@@ -101,8 +101,14 @@ def test_partners_are_written_down_and_said(capsys):
     assert "nobody yet" in said(capsys)
     partners("Ada L.", "Blaise P.")
     partners()
-    assert said(capsys) == 2 * "This lab book is of Ada L. and Blaise P.\n"
+    assert said(capsys) == 2 * "This lab book belongs to Ada L. and Blaise P.\n"
     assert lab_book.read()["partners"] == ["Ada L.", "Blaise P."]
+
+
+def test_a_note_whose_end_is_still_dots_is_not_kept(capsys):
+    lab_book.note("samples count above 0.05 rad/s, because ...")
+    assert capsys.readouterr().out.startswith("note: write what you saw")
+    assert lab_book.read()["notes"] == []
 
 
 def test_the_same_note_is_kept_once():

@@ -94,7 +94,7 @@ def test_an_early_stage_run_again_says_where_the_finished_class_went(home, capsy
     check("PID", cell(solutions.source("PID"), "PID"))
     assert "finished" not in capsys.readouterr().out
     check("PID.p", cell(solutions.source("PID.p"), "PID"))
-    assert "finished PID was put aside, into my_robot/old" in capsys.readouterr().out
+    assert "finished PID was moved to my_robot/old" in capsys.readouterr().out
     assert any("filter_hz" in file.read_text(encoding="utf-8") for file in (home / "my_robot" / "old").glob("PID_*.py"))
 
 

@@ -24,7 +24,7 @@ def _signals():
         (noise, 3.0, 100.0),
         (jump, 3.0, 100.0),
         (wave, 5.0, 50.0),
-        (noise, 300.0, 100.0),  # the thesis' cut-off
+        (noise, 300.0, 100.0),  # the thesis's cut-off
         (jump, 50.0, 100.0),  # at half the rate
         (wave, 200.0, 1000.0),
         (np.array([0.4, 0.9]), 5.0, 100.0),  # the last one and the new one

@@ -18,7 +18,7 @@ def saturation_of(rgb):
 
 
 def hue_mask(rgb, hue, tolerance):
-    """True (h, w) where the hue is within tolerance of `hue`, rad, and the pixel is no grey    (3.1.3), (3.1)."""
+    """True (h, w) where the hue is within tolerance of `hue`, rad, and the pixel is not a grey    (3.1.3), (3.1)."""
     rgb = np.asarray(rgb, dtype=float)
     r, g, b = np.moveaxis(rgb, -1, 0)
     most = rgb.max(axis=-1)

@@ -111,9 +111,14 @@ export class Layers {
       "velocity ellipsoid": this.velocity, "force ellipsoid": this.force,
     };
     if (ball) {
-      const [p, radius] = ball;
+      const [[first, ...more], radius] = ball;
       this.all.ball = new Mesh(new SphereGeometry(radius, 32, 24), new MeshPhongMaterial({ color: COLOURS.ball, shininess: 60 }));
-      this.all.ball.position.set(...p);
+      for (const p of more) {
+        const other = this.all.ball.clone(false);
+        other.position.set(...p).sub(new Vector3(...first));
+        this.all.ball.add(other);
+      }
+      this.all.ball.position.set(...first);
     }
     scene.add(...Object.values(this.all));
   }

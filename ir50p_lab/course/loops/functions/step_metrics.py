@@ -11,8 +11,8 @@ def step_metrics(t, q, target):
     """Rise time (s), overshoot (rad), settling time (s) and rest error (rad) of one joint's step: four numbers.
 
     Rise from 10 to 90 % of the way from q[0] to the target, nan if it never gets there; overshoot beyond the target,
-    0 if there is none; settling: from when on the joint stays within max(2 % of the way, 4 sigma) of the target, nan if
-    it is outside at the end; rest error: target less the mean of the last second. sigma is the noise, taken from what
+    0 if there is none; settling: when the joint comes to stay within max(2 % of the way, 4 sigma) of the target, nan
+    if it is outside at the end; rest error: target minus the mean of the last second. sigma is the noise, from what
     neighbouring samples of the last second differ by, std(diff)/sqrt(2): a slow swing does not widen its own band. With
     3 sigma one sample in 370 is outside and is taken for the end of the step.
     """
