@@ -143,8 +143,11 @@ def opening(path):
 
 
 if __name__ == "__main__":
+    import selections
+
     for one in rewritten():
         print(f"{one.stem}: {_said(one)} min")
         one.write_text(opening(one), encoding="utf-8", newline="\n")
     README.write_text(filled(README.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
-    INSTRUCTOR.write_text(planned(INSTRUCTOR.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
+    page = selections.filled(planned(INSTRUCTOR.read_text(encoding="utf-8")))
+    INSTRUCTOR.write_text(page, encoding="utf-8", newline="\n")

@@ -1,5 +1,6 @@
-"""Selections of the course, section by section: `PYTHONPATH=. python tests/notebooks/selections.py` writes the table into
-docs/instructor.md. What a session needs, gives and takes is read from the notebooks.
+"""Selections of the course, section by section: `minutes.py` writes the table into docs/instructor.md.
+
+What a session needs, gives and takes is read from the notebooks.
 """
 
 import re
@@ -25,8 +26,8 @@ SELECTIONS = {
         {"06": (1, 4)},
         {"06": (8, 10), "07": (1, 3)},
         {"07": (6, 12)},
-        {"08": (1, 2)},
-        {"08": (3, 5)},
+        {"08": (1, 3)},
+        {"08": (4, 5)},
         {"12": (1, 5)},
         {"12": (6, 8), "13": (1, 4)},
         {"14": (1, 5)},
@@ -84,8 +85,3 @@ def filled(page):
     """The page with the table as it is."""
     before, _, rest = page.partition(START)
     return before + START + "\n" + table() + "\n" + END + rest.partition(END)[2]
-
-
-if __name__ == "__main__":
-    page = minutes.INSTRUCTOR
-    page.write_text(filled(page.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")

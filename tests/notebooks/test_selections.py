@@ -12,7 +12,7 @@ from notebook_runner import NOTEBOOKS
 
 def test_the_table_is_up_to_date():
     page = minutes.INSTRUCTOR.read_text(encoding="utf-8")
-    assert page == selections.filled(page), "run python tests/notebooks/selections.py"
+    assert page == selections.filled(page), "run python tests/notebooks/minutes.py"
 
 
 def core_sections(number):
