@@ -22,6 +22,10 @@ _LACKING = {
     "serial": "speaks to a board",
     **dict.fromkeys(("loky", "numba"), "makes sweeps quick"),
 }
+_TAKES_LONG = """<style>@keyframes ir50p-appears { to { max-height: 4em } }</style>
+<div style="max-height: 0; overflow: hidden; animation: ir50p-appears 0s 10s forwards"><progress></progress>
+This takes more than 10 s: a browser tab computes about fifty times more slowly than Python on your machine.
+To stop the cell, choose <i>Kernel &gt; Restart Kernel</i>; what you wrote stays.</div>"""
 WHEN_NEEDED = ("scipy", "pandas", "sympy")  # packages that the page fetches at their first import
 _KEPT = ("results/**/*", "my_robot/**/*", "progress.json")
 
@@ -70,6 +74,19 @@ def _fetch_behind(result):
     """After the first cell: the largest package, which the first notebook does without."""
     _shell().events.unregister("post_run_cell", _fetch_behind)
     asyncio.get_event_loop().call_later(2, _loading, "scipy")  # s: what the cell shows comes first
+
+
+def _show_while_it_runs(info):
+    """Under the cell that begins: a bar that appears after 10 s, as nothing can be drawn while Python computes."""
+    from IPython.display import HTML, display
+
+    shown = display(HTML(_TAKES_LONG), display_id=True)
+
+    def take_away(result):
+        _shell().events.unregister("post_run_cell", take_away)
+        shown.update(HTML(""))
+
+    _shell().events.register("post_run_cell", take_away)
 
 
 def _shell():
@@ -139,5 +156,6 @@ if IN_BROWSER:
     sys.meta_path.append(Lacking)
     if shell := _shell():
         shell.events.register("post_run_cell", _fetch_behind)
+        shell.events.register("pre_run_cell", _show_while_it_runs)
     logging.getLogger("matplotlib.font_manager").setLevel("ERROR")  # it lists its fonts each time, in red
     warnings.filterwarnings("ignore", "tqdm:disabling monitor")  # it is a thread; the bar moves without it

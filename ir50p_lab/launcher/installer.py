@@ -42,6 +42,7 @@ class Installer:
         self._environment = environment
         self._python = [str(environment.python), "-P", "-m"]
         self._install = [*self._python, "pip", "install", "--disable-pip-version-check", "--no-color", "-vv"]
+        self._install += ["--target="]  # not the folder that a pip.conf may name
         own = {"PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1", "PIP_USER": "0"}
         self._variables = environment.variables() | own
         # It inherits the lock: after a 'kill -9' of the launcher the next set-up waits until it has ended.

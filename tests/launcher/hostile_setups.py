@@ -37,6 +37,17 @@ def test_pip_does_the_work_where_uv_cannot(project, without_uv, setting):
     assert project.run("doctor", variables={"IR50P_ARM": None}).returncode == 0
 
 
+@pytest.mark.parametrize("uv", [True, False])
+def test_the_target_of_a_pip_conf_stays_empty(project, without_uv, tmp_path, uv):
+    (tmp_path / "pip.conf").write_text(f"[install]\ntarget = {tmp_path / 'target'}\n")
+    wheels = str(project.wheels) if uv else without_uv
+    settings = {"PIP_CONFIG_FILE": str(tmp_path / "pip.conf"), "PIP_FIND_LINKS": wheels}
+    done = project.run("setup", variables=settings)
+    assert done.returncode == 0, done.stderr
+    assert ("-m', 'uv'" in project.log()) == uv
+    assert project.python(IMPORT_BOTH).returncode == 0 and not (tmp_path / "target").exists()
+
+
 @pytest.mark.parametrize(("version", "code"), [("1.0", 0), ("2.0", 1)])
 def test_uv_keeps_to_a_constraint_of_pip(project, version, code):
     (project.root / "constraints.txt").write_text(f"pebble=={version}\n")

@@ -29,7 +29,7 @@ def whiteness_figure(tests):
         ax.plot(lags, np.r_[1, test.correlation[:, 1]], ".-", ms=4, color=COLOURS[colour], label=name)
     ax.axhspan(-test.bound, test.bound, color=COLOURS["grey"], alpha=0.4, lw=0)
     ax.set(xlabel="time between two residuals [ms]", ylabel="their correlation [1]", ylim=(-0.5, 1.05))
-    ax.set_title("Joint 2: grey, as white noise would be; what is above, a model could still learn")
+    ax.set_title("Joint 2: grey, as white noise would be; a model could still learn what is above")
     ax.legend(fontsize=8)
     return figure
 

@@ -134,7 +134,7 @@ def helped_by(text):
 
 def _keep_text(where, text, asked):
     text = str(text).strip()
-    if text in ("", "..."):
+    if not text or text.endswith("..."):
         print(f"{asked} between the quotation marks, then run the cell.")
         return
     change(lambda book: text in (one["text"] for one in book[where]) or book[where].append({"text": text, "at": now()}))

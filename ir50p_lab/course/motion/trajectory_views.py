@@ -51,7 +51,7 @@ def bill_panel():
     def update(seconds, shares):
         for line, share in zip(lines, shares.T, strict=True):
             line.set_data(np.linspace(0, seconds, len(share)), share)
-        ax.set_title(f"In {seconds:.2f} s: up to {100 * np.max(np.abs(shares)):.0f} % of what a motor can")
+        ax.set_title(f"In {seconds:.2f} s: up to {100 * np.max(np.abs(shares)):.0f} % of what a motor can give")
 
     return figure, update
 

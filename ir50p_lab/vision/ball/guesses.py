@@ -1,4 +1,4 @@
-"""Where a ball might be: circles that fit the regions of its colour. Most are none; each is measured afterwards."""
+"""Where a ball might be: circles that fit the regions of its colour. Most are not; each is measured afterwards."""
 
 import cv2
 import numpy as np
@@ -52,7 +52,7 @@ def _masks(image, colour):
 def _other_than_most(image, mask):
     """255 where the hue of a mask's pixels (h, w) is far from that of most of them: a ball on a table of its colour.
 
-    How far is far, Otsu's threshold tells.
+    Otsu's threshold tells how far is far.
     """
     lab = cv2.cvtColor(image, cv2.COLOR_RGB2LAB)[..., 1:]
     off = np.linalg.norm(lab - np.median(lab[mask > 0], axis=0), axis=2)

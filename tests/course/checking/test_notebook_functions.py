@@ -66,6 +66,18 @@ WRONG = [
     ("nearest", "    a = on_line - lens\n    return lens + np.dot(hand - lens, a) / np.linalg.norm(a) * a", ""),
     ("nearest", "    return lens + np.cross(hand - lens, on_line - lens)", ""),
     ("nearest", "    a = on_line / np.linalg.norm(on_line)\n    return lens + np.dot(hand - lens, a) * a", ""),
+    ("both_ways", "    return x", ""),
+    ("both_ways", "    return np.convolve(x, np.ones(9) / 9, 'same')", ""),
+    ("acted", "    return u", "delay does nothing"),
+    ("acted", "    return np.concatenate([np.zeros((round(delay * 10), 3)), u])[: len(u)]", ""),
+    ("fit_joint", "    return np.linalg.lstsq(Y, y, rcond=None)[0]", ""),
+    ("fit_joint", "    return np.linalg.lstsq(Y[use], y[use], rcond=None)[0]", ""),
+    ("most_counts", "    return 255", ""),
+    ("most_counts", "    return seconds * np.abs(theta).max()", ""),
+    ("when_it_acts", "    return plan_at(0)[0] + off, plan_at(0)[1] + off_rate, plan_at(0)", "delay does nothing"),
+    ("when_it_acts", "    return off + delay * off_rate, off_rate, plan_at(delay)", ""),
+    ("when_it_acts", "    p = plan_at(delay)\n    return p[0] - off, p[1] - off_rate, p", ""),
+    ("camera_at", "    return np.eye(4)", ""),
 ]
 GIVEN = {
     "tip": lambda q, l: jacobian(frames(q, l), 3, frames(q, l)[3][:3, 3])[:3],

@@ -105,6 +105,12 @@ def test_partners_are_written_down_and_said(capsys):
     assert lab_book.read()["partners"] == ["Ada L.", "Blaise P."]
 
 
+def test_a_note_whose_end_is_still_dots_is_not_kept(capsys):
+    lab_book.note("samples count above 0.05 rad/s, because ...")
+    assert capsys.readouterr().out.startswith("note: write what you saw")
+    assert lab_book.read()["notes"] == []
+
+
 def test_the_same_note_is_kept_once():
     lab_book.note("it sank")
     lab_book.note("it sank")

@@ -84,5 +84,5 @@ def race(bench, theta, legs, meets, kp=25, kd=15):
 def unknown_arm(bench):
     balls = views.find_balls(bench, camera_at)
     theta = learn(bench, practise(bench, 1))
-    legs = views.plan(bench, balls, partial(quickest, theta, most=200))
+    legs = views.plan(bench, balls, partial(quickest, theta, most=225))
     race(bench, theta, legs, when_it_acts)
