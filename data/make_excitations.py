@@ -106,7 +106,7 @@ def save_excitations(path, motions, *, made_by):
     """Write {name: Fourier} to a JSON file for `load_excitations`, every digit kept. made_by: the command."""
     rows = {}
     for name, motion in motions.items():
-        periods = round((motion.duration - motion.start) / motion.period)
+        periods = round(motion.duration / motion.period)
         rows[name] = {"period": motion.period, "periods": periods, "q0": motion.q0, "a": motion.a, "b": motion.b}
     text = json.dumps({"made_by": made_by, "unit": "rad, s", "motions": rows}, indent=1)
     Path(path).write_text(text + "\n", encoding="ascii")

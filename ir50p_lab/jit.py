@@ -10,7 +10,6 @@ Without numba, in a browser tab, `jit` is the identity: everything runs in plain
 import contextlib
 import functools
 import hashlib
-import os
 import re
 import tempfile
 from pathlib import Path
@@ -42,19 +41,13 @@ def cache_folder():
 
 
 def _places():
-    """$NUMBA_CACHE_DIR, the package, the user's cache, the student's folder, a temporary folder of the user's own."""
+    """$NUMBA_CACHE_DIR, the package, the user's cache, the student's folder."""
     if numba.config.CACHE_DIR:
         yield Path(numba.config.CACHE_DIR)
     yield _PACKAGE / "__pycache__"
     with contextlib.suppress(RuntimeError):  # a user without a home directory
         yield Path.home() / ".cache"
     yield home() / ".cache"
-    with contextlib.suppress(OSError):
-        user = getattr(os, "getuid", int)()
-        own = Path(tempfile.gettempdir(), f"ir50p_lab-{user}")
-        own.mkdir(mode=0o700, exist_ok=True)
-        if own.stat().st_uid == user:  # not made by somebody else, whose machine code would run
-            yield own
 
 
 def _takes_files(folder):

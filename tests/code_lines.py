@@ -18,19 +18,19 @@ ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {  # what there is; the design asks for less in bench, course, launcher, root and tests
     "modelling": 1133,
-    "signals": 354,
+    "signals": 333,
     "controllers": 284,
     "simulation": 456,
     "bench": 2383,
-    "identification": 1486,
+    "identification": 1465,
     "vision": 2279,
-    "course": 9155,  # without the next two
-    "course/publishing": 729,
+    "course": 9134,  # without the next two
+    "course/publishing": 698,
     "course/grading": 565,
     "launcher": 589,
-    "root": 366,
+    "root": 359,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_779, 20_057, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_678, 20_032, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

@@ -42,7 +42,7 @@ def regressor_condition(motion):
 
 def _judged(motion):
     """Condition numbers (3,) along one period, and the share of it near standstill, 1/(1 + (qd/0.1 rad/s)^2)."""
-    t = motion.start + motion.period * (np.arange(_POINTS) + 0.5) / _POINTS
+    t = motion.period * (np.arange(_POINTS) + 0.5) / _POINTS
     q, qd, qdd = np.swapaxes(motion.sample(t), 0, 1)
     Phi = regressor(q, qd, qdd)
     parts = [Phi[:, joint, columns] for joint, columns in enumerate(RIGID_ON)]

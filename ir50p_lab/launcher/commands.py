@@ -51,7 +51,7 @@ _MODULES = {
     "book": "ir50p_lab.course.publishing.book",
     "report": "ir50p_lab.course.publishing.report",
     "try-page": "ir50p_lab.course.publishing.try_page",
-    "animation": "ir50p_lab.course.publishing.animation",
+    "animation": "tests.support.animation",
     "site": "ir50p_lab.course.publishing.site",
     "update": "ir50p_lab.course.lab_book.update",
     "pack": "ir50p_lab.course.publishing.take_home",
@@ -99,7 +99,7 @@ def _run(arguments, root):
     file = command == "lab" and bool(arguments) and not arguments[0].startswith("-")
     if file and not Path(arguments[0]).exists():
         raise SetUpError(f"There is neither a command nor a file '{arguments[0]}'. Try '{COMMAND} --help'.")
-    if command in ("test", "targets") and not (root / "tests").is_dir():
+    if command in ("test", "targets", "animation") and not (root / "tests").is_dir():
         raise SetUpError(f"{root} came without tests: '{command}' needs the repository, cloned or unpacked.")
     environment = Environment(root)
     if command == "doctor":

@@ -18,21 +18,19 @@ _AT_REST = 1e-9  # of the sum of |k a_k|: rounding of coefficients that were mad
 class Fourier(Reference):
     """Fourier series; made by `fourier`.
 
-    a, b: three rows of N coefficients, rad; q0: (3,) rad, the mean pose; period: s; start: s; duration: s, end of the
-    motion. Before and after it rests in `q_start`.
+    a, b: three rows of N coefficients, rad; q0: (3,) rad, the mean pose; period: s; duration: s, end of the motion.
+    Before and after it rests in `q_start`.
     """
 
     a: tuple
     b: tuple
     q0: tuple
     period: float
-    start: float
     duration: float = field(kw_only=True)
 
     def _rows(self, t):
-        since = t - self.start
-        rows = series(self.a, self.b, self.q0, self.period, since)
-        outside = (since <= 0) | (t >= self.duration)
+        rows = series(self.a, self.b, self.q0, self.period, t)
+        outside = (t <= 0) | (t >= self.duration)
         rows[outside, 0] = self.q_start
         rows[outside, 1:] = 0.0
         return rows
@@ -50,8 +48,6 @@ def fourier(
     period,
     q0=0.0,
     periods=1,
-    record=None,
-    start=0.0,
     ends="check",
     arm=None,
     max_joint_speed=None,
@@ -69,8 +65,7 @@ def fourier(
 
     Args:
         a, b: (3, N) rad, one row per joint. period: s. q0: rad, mean pose, one number or (3,).
-        periods: whole number >= 1. record: s, length of the recording instead; it must be whole periods.
-        start: s; before it the arm rests in `q_start`.
+        periods: whole number >= 1: the length of the motion.
         ends: "check" refuses sums that are not 0; "adjust" takes the nearest coefficients whose sums are 0 (least
             change of all a and b); it needs N >= 2.
         arm: Arm; if given, the motion is checked against its joint limits less `margin` (rad), the speed
@@ -79,17 +74,16 @@ def fourier(
 
     Returns: Fourier, a Reference with `.q_start`.
     Raises: UnreachableError if a limit of the arm is passed (it says which, when and by how much); InputError on wrong
-    shapes, numbers that are not finite, ends that are not at rest, or a record that is not a whole number of periods.
+    shapes, numbers that are not finite, ends that are not at rest.
     """
     a, b = _coefficients(a, b)
-    period, start = number("period", period, "> 0", unit="s"), number("start", start, unit="s")
-    periods = _whole_periods(period, periods, record)
+    period, periods = number("period", period, "> 0", unit="s"), whole("periods", periods, 1, 10**6)
     choice("ends", ends, ("check", "adjust"))
     if ends == "adjust":
         a, b = at_rest(a, b)
     _refuse_moving_ends(a, b)
     a, b = (tuple(map(tuple, rows.tolist())) for rows in (a, b))
-    made = Fourier(a, b, per_joint("q0", q0, unit="rad"), period, start, duration=start + periods * period)
+    made = Fourier(a, b, per_joint("q0", q0, unit="rad"), period, duration=periods * period)
     if arm is not None:
         check_limits(made, arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
     return made
@@ -190,19 +184,6 @@ def _coefficients(a, b):
         if not np.isfinite(array).all():
             raise InputError(f"{name} holds {first_not_finite(array)}; every coefficient must be finite (rad)")
     return a, b
-
-
-def _whole_periods(period, periods, record):
-    if record is None:
-        return whole("periods", periods, 1, 10**6)
-    record = number("record", record, "> 0", unit="s")
-    count = max(round(record / period), 1)
-    if abs(count * period - record) > 1e-9 * record:
-        raise InputError(
-            f"record = {record:g} s holds {record / period:.4g} periods of {period:g} s: record {count * period:g} s, "
-            f"or take a period of {record / count:g} s"
-        )
-    return count
 
 
 def _refuse_moving_ends(a, b):

@@ -37,16 +37,16 @@ class Quintic(Reference):
         return rows
 
 
-def quintic(q0, q1, *, duration, start=0.0):
+def quintic(q0, q1, *, duration):
     """Move from rest at `q0` to rest at `q1`, with zero velocity and acceleration at both ends.
 
-    q = q0 + (q1 - q0)(10 s^3 - 15 s^4 + 6 s^5),  s = (t - start)/duration
+    q = q0 + (q1 - q0)(10 s^3 - 15 s^4 + 6 s^5),  s = t/duration
 
     The largest velocity is 15/8 |q1 - q0|/duration, halfway; the largest acceleration
-    10/sqrt(3) |q1 - q0|/duration^2. Before `start` it rests at q0, after the end at q1.
+    10/sqrt(3) |q1 - q0|/duration^2. Before t = 0 it rests at q0, after the end at q1.
 
-    Args: q0, q1: (3,) rad (may be equal); duration: s, > 0; start: s.
-    Returns: Reference with duration start + duration. Raises InputError on a wrong shape, a number that is not finite
+    Args: q0, q1: (3,) rad (may be equal); duration: s, > 0.
+    Returns: Reference. Raises InputError on a wrong shape, a number that is not finite
     or a duration that is not positive.
 
     >>> from ir50p_lab.signals import quintic
@@ -54,17 +54,16 @@ def quintic(q0, q1, *, duration, start=0.0):
     >>> q.round(3)
     array([ 0.5,  0. , -0.5])
     """
-    start, duration = number("start", start, unit="s"), number("duration", duration, "> 0", unit="s", hint=_TIME)
-    end, points = start + duration, (pose("q0", q0), pose("q1", q1))
-    return Quintic(times=(start, end), points=points, duration=max(0.0, end))
+    duration = number("duration", duration, "> 0", unit="s", hint=_TIME)
+    return Quintic(times=(0.0, duration), points=(pose("q0", q0), pose("q1", q1)), duration=duration)
 
 
-def through(points, *, durations, start=0.0):
+def through(points, *, durations):
     """Move through poses one after the other, resting (for an instant) at each: a chain of `quintic`.
 
     Two equal poses in a row make a pause.
 
-    Args: points: (m, 3) rad, m >= 2; durations: s, one number for every piece, or (m - 1,); start: s.
+    Args: points: (m, 3) rad, m >= 2; durations: s, one number for every piece, or (m - 1,).
     Returns: Reference. Raises InputError as `quintic` does, or if the number of durations does not fit.
     """
     points = vectors3("points", points)
@@ -75,5 +74,5 @@ def through(points, *, durations, start=0.0):
     if len(durations) != pieces:
         raise InputError(f"{len(durations)} durations for {pieces} pieces between {pieces + 1} points: give one each")
     lengths = [number(f"durations[{i}]", T, "> 0", unit="s", hint=_TIME) for i, T in enumerate(durations)]
-    times = np.cumsum([number("start", start, unit="s"), *lengths]).tolist()
-    return Quintic(times=tuple(times), points=tuple(map(tuple, points.tolist())), duration=max(0.0, times[-1]))
+    times = np.cumsum([0.0, *lengths]).tolist()
+    return Quintic(times=tuple(times), points=tuple(map(tuple, points.tolist())), duration=times[-1])

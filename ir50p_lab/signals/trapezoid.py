@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ir50p_lab.inputs import number
 from ir50p_lab.signals.reference import Reference, per_joint, pose
 
 _NO_DISTANCE = 1e-100  # rad: below it a joint stays, so that limit/distance cannot overflow
@@ -15,24 +14,21 @@ _NO_DISTANCE = 1e-100  # rad: below it a joint stays, so that limit/distance can
 class Trapezoid(Reference):
     """Trapezoidal velocity; made by `trapezoid`.
 
-    q0, q1: (3,) rad; start: s; T: s, time of the motion itself. In terms of the share of the path: acceleration a
-    1/s^2, peak velocity v 1/s.
+    q0, q1: (3,) rad. In terms of the share of the path: acceleration a 1/s^2, peak velocity v 1/s.
     """
 
     q0: tuple
     q1: tuple
-    start: float
     a: float
     v: float
-    T: float
     duration: float
 
     def _rows(self, t):
-        a, v, since = self.a, self.v, t - self.start
-        left = self.T - since
-        phases = since < 0, left <= 0, since < v / a, left <= v / a  # before, after, speeding, braking; else full speed
-        s = np.select(phases, (0.0, 1.0, a * since**2 / 2, 1 - a * left**2 / 2), v * (since - v / a / 2))
-        sd = np.select(phases, (0.0, 0.0, a * since, a * left), v)
+        a, v = self.a, self.v
+        left = self.duration - t
+        phases = t < 0, left <= 0, t < v / a, left <= v / a  # before, after, speeding, braking; else full speed
+        s = np.select(phases, (0.0, 1.0, a * t**2 / 2, 1 - a * left**2 / 2), v * (t - v / a / 2))
+        sd = np.select(phases, (0.0, 0.0, a * t, a * left), v)
         sdd = np.select(phases, (0.0, 0.0, a, -a), 0.0)
         rows = np.stack([s, sd, sdd], axis=1)[..., None] * np.subtract(self.q1, self.q0)
         rows[:, 0] += self.q0
@@ -40,7 +36,7 @@ class Trapezoid(Reference):
         return rows
 
 
-def trapezoid(q0, q1, *, v_max, a_max, start=0.0):
+def trapezoid(q0, q1, *, v_max, a_max):
     """Move from rest at `q0` to rest at `q1`: full acceleration, full speed, full braking.
 
     A joint with path D alone needs D/v_max + v_max/a_max, or 2 sqrt(D/a_max) if D < v_max^2/a_max: then it never
@@ -53,9 +49,8 @@ def trapezoid(q0, q1, *, v_max, a_max, start=0.0):
     Args:
         q0, q1: (3,) rad (may be equal).
         v_max, a_max: limits, rad/s and rad/s^2, > 0: one number, or (3,).
-        start: s; before it the arm rests at q0.
 
-    Returns: Reference with duration start + T; `.T` s is the time of the motion itself.
+    Returns: Reference.
     Raises: InputError on a wrong shape, a number that is not finite, or a limit that is not positive.
 
     >>> from ir50p_lab.signals import trapezoid
@@ -63,13 +58,12 @@ def trapezoid(q0, q1, *, v_max, a_max, start=0.0):
     >>> way.duration, way(way.duration)[0].round(3)
     (2.5, array([1., 0., 0.]))
     """
-    q0, q1, start = pose("q0", q0), pose("q1", q1), number("start", start, unit="s")
+    q0, q1 = pose("q0", q0), pose("q1", q1)
     v_max, a_max = per_joint("v_max", v_max, "> 0", unit="rad/s"), per_joint("a_max", a_max, "> 0", unit="rad/s^2")
     distance = np.abs(np.subtract(q1, q0))
     moving = distance > _NO_DISTANCE
     if not moving.any():
-        return Trapezoid(q0, q1, start, a=1.0, v=1.0, T=0.0, duration=max(0.0, start))
+        return Trapezoid(q0, q1, a=1.0, v=1.0, duration=0.0)
     v, a = (float((limit / distance[moving]).min()) for limit in (np.array(v_max)[moving], np.array(a_max)[moving]))
     v = min(v, math.sqrt(a))  # triangle: the path ends before the limit of velocity is reached
-    T = 1 / v + v / a
-    return Trapezoid(q0, q1, start, a=a, v=v, T=T, duration=max(0.0, start + T))
+    return Trapezoid(q0, q1, a=a, v=v, duration=1 / v + v / a)

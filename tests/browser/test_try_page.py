@@ -4,9 +4,9 @@ import pytest
 from accessibility import fits, violations
 from PIL import Image
 
-from ir50p_lab.course.publishing.animation import PICTURE
 from ir50p_lab.course.publishing.try_page import MADE_FROM, PAGE, fingerprint
 from ir50p_lab.modelling import IR50P, inverse_kinematics
+from tests.support.animation import PICTURE
 
 
 def test_it_was_made_from_what_is_here():

@@ -26,23 +26,23 @@ def drawn(seed, harmonics=5, size=0.15, **options):
 
 
 @settings(max_examples=60)
-@given(st.integers(0, 10**6), st.integers(2, 9), st.floats(0.2, 300), st.integers(1, 11), st.floats(-50, 50))
-def test_rests_at_both_ends(seed, harmonics, period, periods, start):
-    target = drawn(seed, harmonics, period=period, periods=periods, start=start)
+@given(st.integers(0, 10**6), st.integers(2, 9), st.floats(0.2, 300), st.integers(1, 11))
+def test_rests_at_both_ends(seed, harmonics, period, periods):
+    target = drawn(seed, harmonics, period=period, periods=periods)
     w = 2 * np.pi / period
-    for t in (start, start + period * periods):
+    for t in (0.0, period * periods):
         near = target.sample([t - 1e-9 * period, t, t + 1e-9 * period])
         np.testing.assert_allclose(near[:, 0], [target.q_start] * 3, atol=1e-9)
         np.testing.assert_allclose(near[:, 1] / w, 0, atol=1e-6)
         np.testing.assert_allclose(near[:, 2] / w**2, 0, atol=1e-5)
-    assert target.duration == pytest.approx(start + period * periods)
-    np.testing.assert_array_equal(target(start - 1), [target.q_start, np.zeros(3), np.zeros(3)])
+    assert target.duration == pytest.approx(period * periods)
+    np.testing.assert_array_equal(target(-1.0), [target.q_start, np.zeros(3), np.zeros(3)])
     np.testing.assert_array_equal(target(target.duration + 1), [target.q_start, np.zeros(3), np.zeros(3)])
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_integrals_of_the_acceleration_give_velocity_and_angle(seed):
-    target = drawn(seed, periods=2, start=0.7)
+    target = drawn(seed, periods=2)
     t = np.linspace(0, 22, 40001)
     rows = target.sample(t)
     v = cumulative_simpson(rows[:, 2], x=t, axis=0, initial=0)
@@ -81,8 +81,7 @@ def test_a_record_of_whole_periods_has_no_leakage():
     size = np.abs(np.fft.rfft(q[:, 0])) / 5500
     size, lines = size[1:], 11 * np.arange(1, 6) - 1
     assert np.delete(size, lines).max() < 1e-12 < size[lines].min()
-    refused(r"holds 10\.5 periods", drawn, 4, record=105.0)
-    assert drawn(4, record=110.0) == target and isinstance(target, Fourier)
+    assert isinstance(target, Fourier)
     assert pickle.loads(pickle.dumps(target)) == target and hash(target)
 
 
@@ -155,9 +154,7 @@ def test_speed_and_table():
         ({"periods": 0}, "periods = 0"),
         ({"periods": 1.5}, "whole number"),
         ({"periods": True}, "periods = True"),
-        ({"record": 3.0}, "record 10 s"),
         ({"ends": "soft"}, "choose 'check' or 'adjust'"),
-        ({"start": np.nan}, "start = nan"),
         ({"arm": "IR50P"}, "arm = .IR50P.: give an Arm"),
         ({"arm": IR50P, "margin": -1}, "margin = -1"),
         ({"arm": IR50P, "table": "low"}, "table = 'low'"),

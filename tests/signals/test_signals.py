@@ -15,9 +15,9 @@ from ir50p_lab.signals import Reference, hold, quintic, sinusoid, steps, through
 A, B, C = (0.1, -0.4, 0.7), (1.2, 0.6, -0.3), (0.0, 0.2, 0.2)
 SMOOTH = {
     "hold": hold(A),
-    "quintic": quintic(A, B, duration=1.7, start=0.4),
-    "through": through([A, B, B, C], durations=[1.0, 0.3, 0.8], start=0.1),
-    "trapezoid": trapezoid(A, B, v_max=(1.0, 0.8, 2.0), a_max=(3.0, 5.0, 2.5), start=0.3),
+    "quintic": quintic(A, B, duration=1.7),
+    "through": through([A, B, B, C], durations=[1.0, 0.3, 0.8]),
+    "trapezoid": trapezoid(A, B, v_max=(1.0, 0.8, 2.0), a_max=(3.0, 5.0, 2.5)),
     "triangle": trapezoid(A, B, v_max=50, a_max=2),
     "sinusoid": sinusoid((0.5, 0.2, 1), (1, 2, 3), offset=A, phase=(0, 1, math.pi / 2)),
 }
@@ -47,24 +47,24 @@ def test_velocity_and_acceleration_are_derivatives(target):
     np.testing.assert_allclose(slope[~jump, 1], here[~jump, 2], atol=1e-4)
 
 
-@pytest.mark.parametrize("duration, start", [(0.001, 0), (1.0, 0.5), (3600.0, 100.0)])
-def test_quintic_rests_at_both_ends_and_has_the_peaks_it_names(duration, start):
-    target = quintic(A, B, duration=duration, start=start)
+@pytest.mark.parametrize("duration", [0.001, 1.0, 3600.0])
+def test_quintic_rests_at_both_ends_and_has_the_peaks_it_names(duration):
+    target = quintic(A, B, duration=duration)
     way = np.subtract(B, A)
-    for t, q in ((start - 1, A), (start, A), (start + duration, B), (start + duration + 9, B), (1e9, B)):
+    for t, q in ((-1.0, A), (0.0, A), (duration, B), (duration + 9, B), (1e9, B)):
         np.testing.assert_array_equal(target(t), [q, (0, 0, 0), (0, 0, 0)])
-    rows = target.sample(start + duration * np.linspace(0, 1, 20001))
+    rows = target.sample(duration * np.linspace(0, 1, 20001))
     np.testing.assert_allclose(np.abs(rows[:, 1]).max(axis=0), 15 / 8 * np.abs(way) / duration, rtol=1e-6)
     np.testing.assert_allclose(np.abs(rows[:, 2]).max(axis=0), 10 / 3**0.5 * np.abs(way) / duration**2, rtol=1e-6)
-    np.testing.assert_allclose(target(start + duration / 2)[0], np.add(A, B) / 2, rtol=1e-9)
-    assert target.duration == start + duration
+    np.testing.assert_allclose(target(duration / 2)[0], np.add(A, B) / 2, rtol=1e-9)
+    assert target.duration == duration
 
 
 def test_through_passes_its_points_and_pauses():
     target = SMOOTH["through"]
-    for t, point in zip((0.1, 1.1, 1.4, 2.2), (A, B, B, C), strict=True):
+    for t, point in zip((0.0, 1.0, 1.3, 2.1), (A, B, B, C), strict=True):
         np.testing.assert_allclose(target(t), [point, (0, 0, 0), (0, 0, 0)], atol=1e-12)
-    np.testing.assert_array_equal(target(1.23), [B, (0, 0, 0), (0, 0, 0)])
+    np.testing.assert_array_equal(target(1.13), [B, (0, 0, 0), (0, 0, 0)])
     assert through([A, B], durations=2) == quintic(A, B, duration=2)
 
 
@@ -83,8 +83,8 @@ def test_trapezoid_keeps_every_limit_and_arrives(q0, q1, v_max, a_max):
     np.testing.assert_array_equal(rows[-1], [q1, (0, 0, 0), (0, 0, 0)])
     assert (rows[:, 0] <= np.maximum(q0, q1) + 1e-12).all() and (rows[:, 0] >= np.minimum(q0, q1) - 1e-12).all()
     # arriving is not a jump: just before the end the joint is almost there, and slow
-    before = target.sample([target.T * (1 - 1e-6)])[0, 0]
-    assert (np.abs(before - q1) <= np.array(a_max) * (1e-6 * target.T) ** 2 / 2 * 1.01 + 1e-14).all()
+    before = target.sample([target.duration * (1 - 1e-6)])[0, 0]
+    assert (np.abs(before - q1) <= np.array(a_max) * (1e-6 * target.duration) ** 2 / 2 * 1.01 + 1e-14).all()
 
 
 @pytest.mark.parametrize("distance, T", [(2.0, 2.0 / 1.0 + 1.0 / 4.0), (0.25, 0.5), (0.01, 0.1), (1e-6, 1e-3)])
@@ -121,7 +121,7 @@ def test_standing_still_is_no_error():
     assert still.duration == 0 and not still.sample([0, 1.0])[:, 1:].any()
     assert not quintic(A, A, duration=1).sample([0, 0.5])[:, 1:].any()
     one_joint = trapezoid((0, 0, 0), (0, 1, 1e-200), v_max=1, a_max=1)
-    assert one_joint.T == 2.0
+    assert one_joint.duration == 2.0
 
 
 def test_steps_jump_at_their_time():
@@ -165,7 +165,6 @@ def test_references_are_frozen_values(target):
         (lambda: steps([[0, 1]], [A, B]), "shape (1, 2)"),
         (lambda: quintic(A, B, duration=0), "finite number > 0"),
         (lambda: quintic(A, B, duration=-1), "duration = -1 s: give one finite number > 0"),
-        (lambda: quintic(A, B, duration=1, start=None), "start"),
         (lambda: quintic(A, [B, C], duration=1), "q1 has shape (2, 3)"),
         (lambda: through([A], durations=1), "at least two poses"),
         (lambda: through([A, B, C], durations=[1]), "1 durations for 2 pieces"),

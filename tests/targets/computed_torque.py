@@ -9,7 +9,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ir50p_lab.controllers import ComputedTorque
-from ir50p_lab.course.torque.views import follow, rms, thesis_pid
+from ir50p_lab.course.fitting.model_views import simulated
+from ir50p_lab.course.torque.views import thesis_pid
 from ir50p_lab.errors import InputError
 from ir50p_lab.identification import identify, load_excitations, regressor
 from ir50p_lab.modelling import IR50P
@@ -26,7 +27,7 @@ MOVE = quintic((0, 0, 0), GOAL, duration=6)
 
 def record(seed, motion):
     """110 s of the unit `seed` on the excitation, as a student records it."""
-    return follow(IR50P, thesis_pid(), motion, min(110.0, motion.duration), seed=seed)
+    return simulated(IR50P, thesis_pid(), motion, min(110.0, motion.duration), seed=seed)
 
 
 def tracked(controller, seed, target=SWING, seconds=15.0):
@@ -35,7 +36,8 @@ def tracked(controller, seed, target=SWING, seconds=15.0):
     Infinite where the arm strayed 2 rad from the reference, so that the bench cut its drive.
     """
     try:
-        return rms(follow(IR50P, controller, target, seconds, seed=seed), target)
+        run = simulated(IR50P, controller, target, seconds, seed=seed)
+        return 1e3 * np.sqrt(np.mean((run.q - target.sample(run.t)[:, 0]) ** 2, axis=0))
     except InputError:
         return np.full(3, np.inf)
 

@@ -66,7 +66,8 @@ def cut(text, name, earlier, given="", function_arguments=(), notebook=()):
             raise CannotTake(f"it uses `{one}`: your robot stands on plain functions and NumPy alone")
         elif one not in GIVEN and not hasattr(builtins, one):
             notebook = dict(notebook)
-            unused = [argument for argument in function_arguments if argument not in _names_in(offered[name])]
+            used = {part.id for part in ast.walk(offered[name]) if isinstance(part, ast.Name)}
+            unused = [argument for argument in function_arguments if argument not in used]
             if unused and callable(notebook.get(one)):
                 raise CannotTake(
                     f"it calls `{one}` of the notebook: it gets the function as its argument `{unused[0]}`"
@@ -112,11 +113,6 @@ def _definitions(tree):
             if node.names[0].name == "*" and node.module in GIVEN:
                 found |= dict.fromkeys(dir(importlib.import_module(node.module)), node)
     return {name: node for name, node in found.items() if name not in GIVEN}
-
-
-def _names_in(node):
-    """Names that a definition uses, its arguments' own places aside."""
-    return {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
 
 
 def globals_of(node):

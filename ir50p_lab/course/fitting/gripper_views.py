@@ -61,10 +61,13 @@ def gripper_run(arm):
 
 def true_theta(arm, recording):
     """The theta (3, 20) of the simulated copy of an arm, its friction as drawn; None where the recording is real."""
-    if not recording.simulated:
-        return None
-    copy = SimulatedBench(arm, record_to=False).plant.unit
-    return arm.theta_pwm / np.broadcast_to(copy.motor_gain, 3)[:, None]
+    return copy_theta(arm) if recording.simulated else None
+
+
+def copy_theta(arm):
+    """The true theta (3, 20) of the simulated copy of an arm, in its own counts."""
+    gain = SimulatedBench(arm, record_to=False).plant.unit.motor_gain
+    return arm.theta_pwm / np.broadcast_to(gain, 3)[:, None]
 
 
 def loop_figure(q, u):

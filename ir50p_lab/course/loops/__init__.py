@@ -7,7 +7,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
     submod_attrs={
         "breaking": ["broken", "name_it"],
         "contest_rules": ["LIMITS", "PID", "contest", "score"],
-        "loop_views": ["Trembling", "ends", "one_loop", "three_loops", "weight_over_angle"],
+        "loop_views": ["Trembling", "ends", "weight_over_angle"],
         "speed_response": ["speed_jump"],
         "tuning_views": ["one_joint", "tuning_panel"],
     },

@@ -1,24 +1,9 @@
-"""Pictures of notebook 08: block diagrams, a push against the weight, where pushes end; trembling."""
+"""Pictures of notebook 08: a push against the weight, where pushes end; trembling."""
 
 import numpy as np
 
-from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.modelling.dynamics import gravity
-
-
-def one_loop():
-    """A joint under its PID: error, three parts, limit, arm, and the way back (Figure 2.1): SVG.
-
-    D is drawn as the class has it: from the speed wanted and the angle measured and filtered, not from the error; the
-    limit tells I when to rest.
-    """
-    return drawing("one_loop")
-
-
-def three_loops():
-    """Three controllers that know nothing of each other, and one arm that couples them (Figure 2.2): SVG."""
-    return drawing("three_loops")
 
 
 def weight_over_angle(arm, push):

@@ -3,7 +3,6 @@
 import numpy as np
 
 from ir50p_lab.course import my_robot
-from ir50p_lab.course.draw.drawings import drawing
 from ir50p_lab.course.draw.style import COLOURS, SETPOINT, subplots
 from ir50p_lab.course.draw.widgets import live, slider
 
@@ -58,11 +57,6 @@ def tuning_panel(run_of, *, joint, **gains):
         return f"{said}, trembles by {np.std(push[-100:]):.0f} counts (std)"
 
     return live(figure, update, **{name: slider(*row, label=f"K{name[1:]}") for name, row in gains.items()})
-
-
-def ruler():
-    """The four figures of a step, drawn on a made-up one: SVG."""
-    return drawing("ruler")
 
 
 def speed_step(t, speed, fitted=None):

@@ -6,6 +6,7 @@ import numpy as np
 
 from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.course import my_robot
+from ir50p_lab.course.fitting.gripper_views import copy_theta  # noqa: F401 - of the face
 from ir50p_lab.course.lab_book.results import arm_at_rest, load_result, newest_result
 from ir50p_lab.course.torque.views import training_run
 from ir50p_lab.identification import identify
@@ -114,12 +115,6 @@ def go(arm, controller_of, reference, seconds):
     with arm_at_rest(arm, "calibration", "model") as bench:
         theta, whose = model_for(arm, bench)
         return bench.follow(controller_of(theta), reference, seconds), whose
-
-
-def copy_theta(arm):
-    """The true theta (3, 20) of the simulated copy of an arm, in its own counts."""
-    gain = SimulatedBench(arm, record_to=False).plant.unit.motor_gain
-    return arm.theta_pwm / np.broadcast_to(gain, 3)[:, None]
 
 
 def table_of_gains(theta, columns):

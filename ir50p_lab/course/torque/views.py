@@ -3,16 +3,11 @@
 import numpy as np
 from matplotlib.colors import LogNorm
 
-from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course.draw.style import JOINTS, colour_map, subplots
+from ir50p_lab.course.fitting.model_views import simulated
 from ir50p_lab.course.fitting.views import kept_motion
 from ir50p_lab.identification import fit, process, regressor
-
-
-def rms(run, reference):
-    """Root mean square of angle minus reference, (3,) mrad. run: anything with t (n,) s and q (n, 3) rad."""
-    return 1e3 * np.sqrt(np.mean((run.q - reference.sample(run.t)[:, 0]) ** 2, axis=0))
 
 
 def thesis_pid():
@@ -21,18 +16,9 @@ def thesis_pid():
     return PID(**gains, limit_pwm=255, position_filter_hz=3.0, filter_hz=np.inf)
 
 
-def follow(arm, controller, reference, seconds, *, seed=0):
-    """One run on the simulated bench from the start of the reference, nothing kept on disk: Recording."""
-    bench = SimulatedBench(arm, seed=seed, q0=reference(0.0)[0], record_to=False).open()
-    try:
-        return bench.follow(controller, reference, seconds)
-    finally:
-        bench.abort()  # no way back to the rest pose: it takes longer than the run
-
-
 def training_run(arm, *, seed=0):
     """A recording to identify from, on the simulated bench: the first motion of notebook 13, thesis's PID."""
-    return follow(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
+    return simulated(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
 
 
 def naive_model(recording):
