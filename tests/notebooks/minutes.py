@@ -23,12 +23,12 @@ PANEL = re.compile(r"^(?:\w+\.)?(?:live|LiveArm|\w*(?:panel|slider)\w*)\(", re.M
 
 def minutes(path):
     """Minutes of a notebook, a multiple of five."""
-    return _counted(nbformat.read(path, as_version=4).cells)
+    return counted(nbformat.read(path, as_version=4).cells)
 
 
 def core(path):
     """Minutes of the core of a notebook: of all but the sections marked more."""
-    return _counted(core_of(nbformat.read(path, as_version=4).cells))
+    return counted(core_of(nbformat.read(path, as_version=4).cells))
 
 
 def core_of(cells):
@@ -44,7 +44,8 @@ def core_of(cells):
     return kept
 
 
-def _counted(cells):
+def counted(cells):
+    """Minutes of some cells, a multiple of five."""
     text = "\n".join(cell.source for cell in cells if cell.cell_type == "markdown")
     code = "\n".join(cell.source for cell in cells if cell.cell_type == "code")
     checked = re.findall(r'\bcheck\("([\w.]+)"', code)
@@ -101,7 +102,7 @@ def _before(path, words):
     """Minutes of the core of a notebook up to the cell that has these words."""
     cells = core_of(nbformat.read(path, as_version=4).cells)
     (end,) = [number for number, cell in enumerate(cells) if words in cell.source]
-    return _counted(cells[: end + 1])
+    return counted(cells[: end + 1])
 
 
 def planned(text):
@@ -142,8 +143,11 @@ def opening(path):
 
 
 if __name__ == "__main__":
+    import selections
+
     for one in rewritten():
         print(f"{one.stem}: {_said(one)} min")
         one.write_text(opening(one), encoding="utf-8", newline="\n")
     README.write_text(filled(README.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
-    INSTRUCTOR.write_text(planned(INSTRUCTOR.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
+    page = selections.filled(planned(INSTRUCTOR.read_text(encoding="utf-8")))
+    INSTRUCTOR.write_text(page, encoding="utf-8", newline="\n")
