@@ -6,6 +6,8 @@ import numpy as np
 
 from ir50p_lab.course.unknown.world import BALLS, END, MISSING, World
 
+FAST = 3.6  # s: a median of at most this wins
+
 
 @dataclass(frozen=True)
 class Raced:
@@ -44,6 +46,12 @@ class RaceDay:
         """On how many arms all balls were touched."""
         return sum(one.touched == BALLS for one in self.races)
 
+    @property
+    def won(self):
+        """Whether it was fast, and complete on 19 of 20 arms or more."""
+        return self.median <= FAST and self.complete >= 0.95 * len(self.races)
+
     def __str__(self):
         rows = [f"arm {number}: {one}" for number, one in enumerate(self.races, 1)]
-        return "\n".join([*rows, f"median {self.median:.2f} s, complete on {self.complete} of {len(self.races)} arms"])
+        rows.append(f"median {self.median:.2f} s, complete on {self.complete} of {len(self.races)} arms")
+        return "\n".join([*rows, "won" if self.won else f"not won: {FAST} s and 19 of 20 arms are wanted"])
