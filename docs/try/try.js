@@ -19,7 +19,7 @@ if (!views.length) {
 
   // 2: how far, and when it is done
   const told = second.parts.box.insertAdjacentElement("beforebegin", document.createElement("p"));
-  const place = second.options.ball[0];
+  const place = second.options.ball[0][0];
   const show = () => {
     const beside = 1000 * Math.hypot(...place.map((v, k) => v - second.scene.tipAt[k]));
     const there = beside < 35;

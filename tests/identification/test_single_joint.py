@@ -255,7 +255,7 @@ def test_a_measured_speed_is_believed_at_few_samples_a_period_and_in_several_rec
     assert any("times qd" in text for text in fit_joint(t, q, u, qd=2 * qd, terms=terms).warnings)
     with pytest.raises(InputError, match=r"\(t, q, u, qd\)"):
         fit_joint([(t, q, u)], qd=qd)
-    with pytest.raises(InputError, match="qd in some of the recordings only"):
+    with pytest.raises(InputError, match="qd is in some of the recordings only"):
         fit_joint([(t, q, u), (t, q, u, qd)])
 
 
