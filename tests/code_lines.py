@@ -24,13 +24,13 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "bench": 2383,
     "identification": 1465,
     "vision": 2279,
-    "course": 9134,  # without the next two
+    "course": 9142,  # without the next two
     "course/publishing": 698,
     "course/grading": 565,
     "launcher": 589,
     "root": 359,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_678, 20_127, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_686, 20_127, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
