@@ -4,13 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ir50p_lab.errors import InputError
+from ir50p_lab.errors import IdentificationError, InputError
 from ir50p_lab.identification.arm_regressor import regressor
 from ir50p_lab.identification.fitting import fit
 from ir50p_lab.identification.processing import process
 from ir50p_lab.identification.recording_checks import Warnings, check_signals
 from ir50p_lab.identification.time_series import columns_of
 
+_CONTRADICT = 1.3  # residual of a recording with the common model over that with its own: if more, it contradicts
+_ALIKE = 0.02  # share of the spread of u: a difference between models that does not matter
 TURN = 0.05  # rad/s: tanh(qd/TURN) stands for sgn(qd), which noise would let jump too early or late at a reversal
 
 
@@ -29,7 +31,8 @@ def identify(
     4. `fit` joint by joint, inertial and friction terms >= 0, and theta6 = l2 theta4 if l2 is given.
 
     Args:
-        recordings: a Recording (t, q, u), or a list of them: other motions of the same arm under the same load.
+        recordings: a Recording (t, q, u), or a list of them: other motions of the same arm under the same load. One
+            that contradicts the others is named, and the errors reach to what each says.
         l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
         method: of `fit`.
         cutoff_hz: Hz, above the frequencies of the motion; held: as in `process`; unit: of u.
@@ -60,5 +63,30 @@ def identify(
         motion = process(recording, slow=slow, **processing)
         parts.append((regressor(motion.q, motion.qd, motion.qdd, sign=TURN), motion.u, motion.use))
     Phi, y, use = map(np.concatenate, zip(*parts, strict=True))
-    found = fit(Phi, y, use=use, method=method, l2=l2, unit=unit)
-    return replace(found, warnings=(*notes, *found.warnings), processing=processing | {"sign": TURN})
+    options = {"method": method, "l2": l2, "unit": unit}
+    found = fit(Phi, y, use=use, **options)
+    said, stderr = _contradiction(found, parts, options) if len(parts) > 1 else ([], found.stderr)
+    warnings = (*notes, *said, *found.warnings)
+    return replace(found, stderr=stderr, warnings=warnings, processing=processing | {"sign": TURN})
+
+
+def _contradiction(found, parts, options):
+    """A sentence about the recording that contradicts the others, if one does, and errors that reach to each, (3, 20).
+
+    It is the one whose residual with the common model exceeds that with its own model most.
+    """
+    ratios, stderr = np.zeros((len(parts), 3)), found.stderr
+    for k, (Phi, u, use) in enumerate(parts):
+        try:
+            own = fit(Phi, u, use=use, **options)
+        except IdentificationError:  # too short to be fitted alone
+            continue
+        together, alone = (np.sqrt(np.mean(e**2, axis=0, where=use)) for e in (u - found.predict(Phi), own.residuals))
+        ratios[k] = together / np.hypot(alone, _ALIKE * u.std(axis=0))
+        apart = np.where(np.isfinite(own.stderr), (own.theta - found.theta) ** 2 - own.stderr**2, 0.0)
+        stderr = np.sqrt(np.maximum(stderr**2, apart))
+    k, joint = np.unravel_index(ratios.argmax(), ratios.shape)
+    if ratios[k, joint] < _CONTRADICT:
+        return [], found.stderr
+    said = f"the common model leaves {ratios[k, joint]:.2g} times as much of u of joint {joint + 1} as its own model"
+    return [f"recording {k + 1} contradicts the others: {said} (another load, a fresher battery?)"], stderr

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ir50p_lab.errors import ArmError, SuspiciousArmWarning
-from ir50p_lab.inputs import number, numbers, vector3
+from ir50p_lab.inputs import number, numbers, vector3, vectors3
 from ir50p_lab.modelling.actuators import Actuators
 from ir50p_lab.modelling.arm_file import read_arm, write_arm
 from ir50p_lab.modelling.friction import Friction
@@ -39,7 +39,8 @@ class Arm:
     ========= ================================================================== ============
 
     Link frames: link 1 has z along the column; links 2 and 3 have x along the link and z along the joint axis.
-    Only such in-line links are expressed exactly by the 20 parameters theta; `derive(general=True)` derives the others.
+    Only such in-line links are expressed exactly by the 20 parameters theta. `Arm.from_rigid_bodies` takes
+    full centres of mass and inertia tensors and refuses the others; `derive(general=True)` can still derive them.
 
     Raises ArmError for what no rigid body can have, InputError for wrong shapes and what is not a number; warns
     SuspiciousArmWarning for what is hardly meant (the list stays in `suspicions`).
@@ -110,6 +111,35 @@ class Arm:
                 if np.isfinite(limit) and abs(limit) > 4 * np.pi:
                     found.append(f"a limit of joint {i} is {limit} rad, over two turns: is it in degrees?")
         return tuple(found)
+
+    @classmethod
+    def from_rigid_bodies(cls, *, l, m, com, inertia, **options):
+        """An arm from full centres of mass and inertia tensors, refused with the reason if not in-line.
+
+        Args:
+            l, m: as in Arm.
+            com: (3, 3) m, one row per link, in the link frame with origin at the joint.
+            inertia: (3, 3, 3) kg m^2, one tensor per link about its centre of mass in the link frame.
+            options: the other fields of Arm.
+
+        Raises ArmError if a centre of mass is off the link axis or a tensor has products of inertia
+        (1.104 corrected: I = [[Ixx, -Ixy, -Ixz], ...]).
+        """
+        com, inertia = vectors3("com", com, unit="m"), np.asarray(inertia, dtype=float)
+        if com.shape != (3, 3) or inertia.shape != (3, 3, 3) or not np.isfinite(inertia).all():
+            raise ArmError(f"com has shape {com.shape}, inertia {inertia.shape}; give (3, 3) and (3, 3, 3), all finite")
+        along = (2, 0, 0)  # the link's own axis: z of the column, x of the others
+        for i in range(3):
+            beside = np.hypot(*np.delete(com[i], along[i]))
+            product = np.abs(inertia[i] - np.diag(np.diag(inertia[i]))).max()
+            if beside > 1e-9 or product > 1e-9 * np.abs(inertia[i]).max():
+                raise ArmError(
+                    f"the centre of mass of link {i + 1} is {beside:.3g} m off the link axis and its products of "
+                    f"inertia reach {product:.3g} kg m^2; the 20 parameters theta hold only links in line, which have "
+                    "neither. derive(general=True) derives the others"
+                )
+        Ixx, Iyy, Izz = np.diagonal(inertia, axis1=1, axis2=2).T
+        return cls(l=l, m=m, lc=com[range(3), along], Ixx=Ixx, Iyy=Iyy, Izz=Izz, **options)
 
     @property
     def reach(self):

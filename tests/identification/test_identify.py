@@ -1,5 +1,7 @@
 """The recipe in one call, motions kept in a file, and the simulation that chose them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from refusals import refused
@@ -104,3 +106,18 @@ def test_motions_come_back_as_they_were(tmp_path):
 def test_bad_arguments(options, words):
     record = run("training", seconds=5)
     refused(words, identify, **{"recordings": record, **options})
+
+
+def test_a_run_that_contradicts_the_others_is_named(records):
+    """A fresher battery in one, an unlike load; three that agree say nothing."""
+    train, valid = records
+    third, loaded = run("validation 2", seed=5), run("validation 1", arm=IR50P.with_payload(0.1))
+    fresher = SimpleNamespace(t=valid.t, q=valid.q, u=valid.u / 1.15)
+    agreed = identify([train, valid, third], l2=0.2)
+    assert not any("contradicts" in text for text in agreed.warnings)
+    for odd in (fresher, loaded):
+        found = identify([train, odd, third], l2=0.2)
+        assert any("recording 2 contradicts the others" in text for text in found.warnings)
+        seen = np.isfinite(found.stderr) & np.isfinite(agreed.stderr) & (agreed.stderr > 0)
+        assert np.median(found.stderr[seen] / agreed.stderr[seen]) > 2
+    assert "contradicts the others" in " ".join(identify([fresher, train], l2=0.2).warnings)

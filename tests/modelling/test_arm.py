@@ -197,3 +197,19 @@ def test_a_file_saved_by_an_editor_of_windows_is_read(tmp_path):
     text = (tmp_path / "arm.toml").read_text(encoding="utf-8")
     (tmp_path / "arm.toml").write_bytes(text.replace("\n", "\r\n").encode("utf-8-sig"))
     assert Arm.load(tmp_path / "arm.toml") == IR50P
+
+
+def test_full_rigid_bodies_are_taken_or_refused():
+    com = np.array([[0, 0, 0.1], [0.1, 0, 0], [0.1, 0, 0]])
+    inertia = np.array([np.diag([0.01, 0.01, 0.01])] * 3)
+    arm = Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=inertia, name="bodies")
+    assert arm == Arm(**GOOD, name="bodies", Ixx=(0.01,) * 3, Iyy=(0.01,) * 3, Izz=(0.01,) * 3)
+    beside = com + np.array([[0, 0, 0], [0, 0.02, 0], [0, 0, 0]])
+    with pytest.raises(ArmError, match=r"link 2 is 0.02 m off the link axis.*derive\(general=True\)"):
+        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=beside, inertia=inertia)
+    skewed = inertia.copy()
+    skewed[2, 0, 1] = skewed[2, 1, 0] = 0.002
+    with pytest.raises(ArmError, match=r"link 3 .* products of inertia reach 0\.002"):
+        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=skewed)
+    with pytest.raises(ArmError, match=r"\(3, 3, 3\)"):
+        Arm.from_rigid_bodies(l=GOOD["l"], m=GOOD["m"], com=com, inertia=inertia[0])
