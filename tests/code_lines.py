@@ -17,12 +17,12 @@ NOT_OURS = {"node_modules", "__pycache__"}
 ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
 BUDGETS = {  # what there is; the design asks for less in bench, course, launcher, root and tests
-    "modelling": 1133,
+    "modelling": 1150,
     "signals": 333,
     "controllers": 284,
     "simulation": 456,
     "bench": 2383,
-    "identification": 1465,
+    "identification": 1486,
     "vision": 2279,
     "course": 9142,  # without the next two
     "course/publishing": 698,
@@ -30,7 +30,7 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "launcher": 589,
     "root": 359,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_686, 20_127, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_724, 20_154, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
