@@ -56,10 +56,14 @@ def test_notebook_with_solutions(number, tmp_path):
         assert list(predictions.contradictions(number, said)) == []
 
 
-def assert_solved(number, tmp_path, source, first=()):
-    """Run a notebook by source(name) of each function; `first`: functions of earlier notebooks, written before."""
+def assert_solved(number, tmp_path, source, first=(), only=None):
+    """Run a notebook by source(name) of each function; `first`: functions of earlier notebooks, written before.
+
+    only: ids of the cells that are run, None for all.
+    """
     (found,) = [one for one in NOTEBOOKS if one.name.startswith(number)]
     notebook = stripped.read(found)
+    notebook.cells = [cell for cell in notebook.cells if only is None or cell.id in only]
     notebook.cells[2:2] = [nbformat.v4.new_code_cell(f'check("{name}", {name})') for name in first]
     asked = []
     for cell in notebook.cells:
