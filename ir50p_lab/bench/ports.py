@@ -15,9 +15,10 @@ class Port(namedtuple("Port", "device board")):
 def list_ports():
     """All serial ports of this computer, those of a Mega 2560 first, then chips of its clones, then the others."""
     try:
+        import serial  # noqa: F401 - by itself first: a browser tab lacks it, and has no ports
         from serial.tools import list_ports
     except ModuleNotFoundError as missing:
-        if missing.name == "serial":  # a browser tab has no ports
+        if missing.name == "serial":
             return []
         raise failed("the list of serial ports", missing) from missing
     ports = [Port(port.device, board_name(port.vid, port.pid)) for port in sorted(list_ports.comports())]
