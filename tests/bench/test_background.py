@@ -1,5 +1,6 @@
 """The loop in the background: gains, set points and stops reach it; nothing that dies leaves the drive on."""
 
+import gc
 import os
 import signal
 import subprocess
@@ -374,3 +375,13 @@ def test_the_drive_is_cut_when_the_notebook_dies(commands):
     cut = next(t for t, _, words in lines(commands) if words == ["cut"] and t > killed)
     driven = max(t for t, _, words in lines(commands) if words[0] == "drive")
     assert driven < cut and cut - killed < 0.1
+
+
+def test_a_loop_in_a_thread_does_not_wait_for_what_the_notebook_holds():
+    heap = [[] for _ in range(100_000)]
+    with SimulatedBench(record_to=False) as bench:
+        run = bench.start(pid())
+        until(lambda: run.phase == "running")
+        assert gc.get_freeze_count() > len(heap)
+        run.cut()
+        assert gc.get_freeze_count() == 0

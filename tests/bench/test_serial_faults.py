@@ -11,7 +11,7 @@ from fake_board import ANSWER, FakeBoard
 from refusals import refused
 
 from ir50p_lab.bench import SerialBench, nominal_calibration, ports, protocol, serial_bench
-from ir50p_lab.errors import BoardError, BoardLostError, PauseError, PortError
+from ir50p_lab.errors import BoardError, BoardLostError, InputError, PauseError, PortError, RunawayError
 from ir50p_lab.modelling import IR50P
 
 CALIBRATION = nominal_calibration(IR50P)
@@ -462,6 +462,33 @@ def test_broken_wire_of_a_potentiometer(board, joint, reads):
 
 
 # ---- cutting
+
+
+@pytest.mark.parametrize("dead", [False, True])
+@pytest.mark.parametrize("fault", ["command", "tip", "wire"])
+def test_no_error_says_that_the_drive_is_off_before_the_board_has(board, fault, dead):
+    """The line dies after an answer, before the cut: nobody knows, and the board cuts 0.1 s after the last command."""
+    if fault == "tip":
+        board.q = np.array([0.0, -0.8, 0.0])
+
+    late = []
+
+    def on_answer(n, data):
+        late.extend([n] * int(board.q[0] > 9))  # those after the wire broke: to a command, then with the measurement
+        board.dead = dead and len(late) > 1
+        return data
+
+    board.on_answer = on_answer
+    with pytest.raises((BoardError, InputError, RunawayError)) as caught, bench_of(board) as bench:
+        for k, _ in enumerate(bench.run(1.0)):
+            if k == 5 and fault == "wire":
+                board.q[0] = 10.0  # no potentiometer reads that
+            board.dead = dead and fault != "wire" and k == (0 if fault == "tip" else 5)
+            bench.drive((np.nan, 0, 0) if fault == "command" and k == 5 else (50, -50, 50))
+    assert ("the board has not confirmed the cut: it brakes by itself within 0.1 s" in str(caught.value)) == dead
+    assert any(said in str(caught.value) for said in ("drive has been cut", "drive is off")) != dead
+    board.sleep(0.1)
+    assert not board.pwm.any()
 
 
 @pytest.mark.parametrize("state", ["well", "dead", "unplugged", "noisy", "closed"])

@@ -174,6 +174,16 @@ def test_delay_leads_error_and_reference_ahead():
 # ---- one controller for every loop
 
 
+def test_delay_asks_the_model_for_the_pose_of_then():
+    """On a reference of constant acceleration, without an error: inverse dynamics of the reference a delay later."""
+    rng = np.random.default_rng(4)
+    arm, d = random_arm(rng), 0.1
+    (q,), (qd,), (qdd,) = random_states(rng, 1)
+    u = step(ComputedTorque(arm, 10, 2, delay=d), q, (q, qd, qdd))
+    then = q + d * qd + d**2 / 2 * qdd
+    np.testing.assert_allclose(u, inverse_dynamics(arm, then, qd + d * qdd, qdd), rtol=1e-9)
+
+
 @pytest.mark.parametrize("options", [{}, {"delay": 0.02, "smooth": 0.1, "ki": 3.0}])
 def test_python_step_and_compiled_loops_agree_to_the_bit(options):
     def made():

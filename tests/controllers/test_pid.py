@@ -26,6 +26,11 @@ def test_velocity_filter_is_the_first_order_low_pass_it_says():
     np.testing.assert_allclose(unfiltered[:, 0], [0, -1, -1], atol=1e-12)
 
 
+def test_position_filter_is_the_first_order_low_pass_it_says():
+    u = run(PID(kp=1, position_filter_hz=3), [ZERO, *np.ones((30, 3))])  # q leaps from 0 to 1 rad
+    np.testing.assert_allclose(-u[:, 0], 1 - np.exp(-2 * np.pi * 3 * 0.01 * np.arange(31)), atol=1e-12)
+
+
 def test_no_position_filter_is_the_default_to_the_last_bit():
     q = np.random.default_rng(2).normal(size=(50, 3))
     gains = {"kp": (3, 4, 5), "ki": (1, 2, 3), "kd": (0.5, 0.2, 0.1)}

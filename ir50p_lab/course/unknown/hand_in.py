@@ -17,7 +17,7 @@ NAME = "unknown_arm"
 def hand_in(function):
     """Write `results/unknown_arm.py`, which is handed in and judged, and return its Path.
 
-    function: of the notebook, called unknown_arm; what it calls comes along. Raises InputError where dots still stand
+    function: of the notebook, called unknown_arm; what it calls comes along. Raises InputError if dots are left
     in it, or where it needs a thing that is neither a function nor plain numbers.
     """
     path = home.home() / "results" / f"{NAME}.py"
@@ -31,7 +31,7 @@ def text_of_hand_in(function):
     if not inspect.isfunction(function) or function.__name__ != NAME:
         raise InputError(f"a hand-in is a function called `{NAME}`, of the bench; this is {function!r:.60}")
     if is_open(function):
-        raise InputError(f"dots still stand in `{NAME}`: write it first")
+        raise InputError(f"there are still dots in `{NAME}`: write it first")
     found, left = {}, {NAME: function}
     while left:
         name, value = left.popitem()

@@ -80,7 +80,7 @@ def test_a_hand_in_takes_along_what_it_rests_on(monkeypatch):
 def test_what_cannot_be_handed_in_is_told():
     with pytest.raises(InputError, match="a function called `unknown_arm`"):
         text_of_hand_in(notebook("def other(bench):\n    pass\n", "other"))
-    with pytest.raises(InputError, match="dots still stand"):
+    with pytest.raises(InputError, match="there are still dots"):
         text_of_hand_in(notebook("def unknown_arm(bench):\n    ...\n", "unknown_arm"))
     with pytest.raises(InputError, match="needs `thing`"):
         text_of_hand_in(notebook("def unknown_arm(bench):\n    thing\n", "unknown_arm", thing=object()))
