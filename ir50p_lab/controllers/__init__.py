@@ -1,7 +1,7 @@
 """Controllers: one protocol for the notebook, the simulation, the sweep and the bench.
 
-`controller.step(t, measured, reference) -> u`: `measured` is q (3,) rad, `reference` is (q, qd, qdd); state and
-velocity filter live inside the controller. Names are loaded on first use.
+`controller.step(t, measured, reference) -> u`: `measured` is q (3,) rad, `reference` is (q, qd, qdd). The controller
+keeps its own state and velocity filter. Names are loaded on first use.
 """
 
 from ir50p_lab import lazy

@@ -1,4 +1,4 @@
-"""What a controller is: numbers in two arrays and one compiled function that all loops share."""
+"""What a controller is: numbers in two arrays, and one compiled function that all loops share."""
 
 import math
 import warnings
@@ -14,7 +14,7 @@ GAINS = ("kp", "ki", "kd")
 
 
 def three(place, what):
-    """Property: the three numbers, one per joint, that stand at `place` of a controller's parameters."""
+    """Return a property that reads the three numbers, one per joint, at `place` of a controller's parameters."""
 
     def read(self):
         return self.parameters[place : place + 3].copy()
@@ -25,9 +25,9 @@ def three(place, what):
 class Controller:
     """A controller whose law is compiled once and runs in the notebook, the simulation, the sweep and the bench.
 
-    The law is `law_step`; its numbers are in `parameters`, kp, ki and kd first, its memory in `state`. `rows` and
-    `tables` are (name, place) of what stands in the parameters: three numbers, or (3, 20). `unit` is that of the
-    command ('N m' or 'PWM'). Python's `step` and the compiled loops call the same function on the same arrays: the
+    The law is `law_step`. Its numbers are in `parameters` (kp, ki and kd first), its memory is in `state`. `rows` and
+    `tables` are pairs (name, place) that say what the parameters hold: three numbers, or (3, 20). `unit` is that of the
+    command ('N m' or 'PWM'). Python's `step` and the compiled loops call the same function on the same arrays, so their
     numbers are the same to the last bit.
     """
 
@@ -50,13 +50,15 @@ class Controller:
             p[law.POSITION_RATE] = 2 * np.pi * number("position_filter_hz", position_filter_hz, "> 0", unit="Hz")
 
     def reset(self):
-        """Forget the past: integrals, filters and the last sample."""
+        """Forget the past: the integrals, the filters and the last sample."""
         self.state[:] = 0.0
 
     def set_gains(self, kp=None, ki=None, kd=None):
-        """Change gains in the middle of a run: that of a `PID` does not jump, its integral takes up the difference.
+        """Change gains in the middle of a run, a `PID` without a jump of its command: its integral takes up the
+        difference.
 
-        What is left out stays. Raises InputError for gains that are negative or not finite (none is changed then).
+        Args: kp, ki, kd: (3,) or one number; a gain that is left out stays as it is.
+        Raises InputError for gains that are negative or not finite (then none is changed).
         """
         p, s, given = self.parameters, self.state, {"kp": kp, "ki": ki, "kd": kd}
         wanted = {place: gains(name, given[name]) for name, place in self.rows if given[name] is not None}
@@ -69,7 +71,9 @@ class Controller:
             s[self.takes_up : self.takes_up + 3] += (before[0] - self.kp) * ahead + (before[1] - self.kd) * slope
 
     def header(self):
-        """Lines for the head of a recording: dict of str; gains of joints 1 to 3, filters, and the model if any."""
+        """Return what the head of a recording says: dict of str with the gains of the joints, the filters, and any
+        model.
+        """
         p, lines = self.parameters, {"controller": type(self).__name__}
         for name, place in self.rows:
             lines[name] = " ".join(f"{x:g}" for x in p[place : place + 3])
@@ -81,10 +85,10 @@ class Controller:
         return lines
 
     def step(self, t, measured, reference):
-        """The command for one sample.
+        """Return the command for one sample.
 
         Args: t: s; measured: q (3,) rad; reference: (q, qd, qdd), three vectors (3,) or an array (3, 3).
-        Returns: u (3,), in `unit`, after limits. Raises InputError if a number is not finite; warns where t runs
+        Returns: u (3,), in `unit`, within its limits. Raises InputError if a number is not finite; warns if t runs
             backwards.
         """
         u = np.empty(3)
@@ -101,19 +105,19 @@ class Controller:
 
 
 def is_compiled(controller):
-    """Whether compiled loops may run it: a controller of the package whose `step` nobody has replaced."""
+    """Return True if compiled loops may run it: a controller of the package whose `step` nobody has replaced."""
     return isinstance(controller, Controller) and getattr(controller.step, "__func__", None) is Controller.step
 
 
 def gains_of(controller):
-    """{'kp': (3,), 'ki': (3,), 'kd': (3,)} of any controller that keeps its gains under these names, else {}."""
+    """Return {'kp': (3,), 'ki': (3,), 'kd': (3,)} of a controller that keeps its gains under these names, else {}."""
     if not all(hasattr(controller, name) for name in GAINS):
         return {}
     return {name: np.broadcast_to(np.asarray(getattr(controller, name), dtype=float), 3).copy() for name in GAINS}
 
 
 def set_gains(controller, **gains):
-    """Change kp, ki, kd of a running controller: by its own `set_gains`, else where it keeps them."""
+    """Change kp, ki, kd of a running controller: by its own `set_gains` if it has one, else in its attributes."""
     if hasattr(controller, "set_gains"):
         return controller.set_gains(**gains)
     for name, value in gains.items():
@@ -121,17 +125,26 @@ def set_gains(controller, **gains):
 
 
 def gains(name, value):
-    """Three gains, finite and not negative, as an array (3,); a scalar counts for all joints. Raises InputError."""
+    """Return three gains, finite and not negative, as an array (3,); a scalar counts for all joints.
+
+    Raises InputError.
+    """
     return np.array(per_joint(name, value, ">= 0", unit="command per rad"))
 
 
 def limits(value):
-    """Limits of a command (3,), > 0, one number or one per joint; infinite, or None: no limit. Raises InputError."""
+    """Return the limits of a command as an array (3,), all > 0, from one number or three; None or infinity: no limit.
+
+    Raises InputError for other shapes and values.
+    """
     return np.array(per_joint("limit", np.inf if value is None else value, "> 0 or inf"))
 
 
 def unit_of(limit_pwm, limit):
-    """(unit, limit) of a command by which of two limits was given; with neither it is in N m. Raises InputError."""
+    """Return (unit, limit) of a command: the unit is 'PWM' if limit_pwm is given, else 'N m'.
+
+    Raises InputError if both limits are given.
+    """
     if limit_pwm is not None and limit is not None:
         raise InputError("give limit_pwm (PWM counts) or limit (N m), not both: the command has one unit")
     return ("N m", limit) if limit_pwm is None else ("PWM", limit_pwm)
@@ -151,7 +164,7 @@ def _plain_rows(reference):
 
 
 def check_controller(controller):
-    """Raise InputError if it has no step()."""
+    """Raise InputError if the controller has no step()."""
     if not callable(getattr(controller, "step", None)):
         raise InputError(
             f"controller = {controller!r:.60}: give a controller with step(t, measured, reference), such as PID(...)"
@@ -159,7 +172,7 @@ def check_controller(controller):
 
 
 def check_reference(reference, *, sampled=False):
-    """Raise InputError if it is not a function; sampled: what only has `sample(times)` is enough."""
+    """Raise InputError if the reference is not a function; with `sampled`, a `sample(times)` is enough."""
     if not (callable(reference) or (sampled and hasattr(reference, "sample"))):
         raise InputError(
             f"reference = {reference!r:.60}: give a function of time, target(t) -> (q, qd, qdd), such as hold([...])"

@@ -18,26 +18,28 @@ class ComputedTorque(Controller):
 
         u = M(q) v + C(q, qd) qd + g(q) + F = Phi(q, qd, v) theta,    v = qdd_ref - kd de/dt - kp e - ki int e dt
 
-    With the true model the error obeys e'' + kd e' + kp e = 0 on every joint (2.20): kd = 2 sqrt(kp) is critically
-    damped, sqrt(kp) rad/s its speed. The thesis writes e = q_ref + q (2.7); with e = q_ref - q, as for the PID, this
-    law would be unstable: the error is q - q_ref here.
+    With the true model the error obeys e'' + kd e' + kp e = 0 on every joint (2.20): kd = 2 sqrt(kp) damps it
+    critically, and sqrt(kp) rad/s is its speed. The thesis writes e = q_ref + q (2.7). The error here is q - q_ref;
+    with e = q_ref - q, as in the PID, this law would be unstable.
 
-    - the model: an Arm, a theta (3, 20) or (20,), or an `Estimate` of a recording; a row per joint, so that motors
-      of unequal gain and PWM counts need no further care;
-    - the rate of the *error* is filtered, so that a joint that follows sees no lag of the filter;
-    - friction is compensated as far as the model holds any, dry friction for the *reference's* direction, smoothed over
-      +-smooth rad/s: measured velocity changes sign with every bit of noise, and the compensation would chatter;
-    - delay: s from a sample to the moment its command acts; error and reference are led ahead by as much;
-    - integral with anti-windup (it rests while its joint is limited) and limits. `set_gains` acts at once.
+    - The model is an Arm, a theta (3, 20) or (20,), or an `Estimate` from a recording. Each joint has its own row, so
+      that motors of unequal gain and PWM counts need no further care.
+    - The rate of the *error* is filtered, so that a joint that follows its reference sees no lag of the filter.
+    - Friction is compensated as far as the model holds any. Dry friction is that for the *reference's* direction,
+      over +-smooth rad/s: measured velocity changes sign with every bit of noise, and the compensation would chatter.
+    - `delay` is the time from a sample to the moment when its command acts, s; error and reference are led ahead by it.
+    - The integral has anti-windup (it rests while its joint is limited), and the command has limits. `set_gains` acts
+      at once.
 
     Args:
-        model: Arm, theta or Estimate. In PWM counts if it is an Estimate in PWM, or if limit_pwm is given; else N m.
-        kp, kd, ki: (3,) or one number: 1/s^2, 1/s, 1/s^3, whatever the arm.
+        model: Arm, theta or Estimate. It is in PWM counts if it is an Estimate in PWM, or if limit_pwm is given; else
+            in N m.
+        kp, kd, ki: (3,) or one number: 1/s^2, 1/s, 1/s^3, for any arm.
         limit_pwm: PWM counts, scalar or (3,), default 255 for an Estimate in PWM; or limit: N m, default none.
-        smooth: rad/s, width of the smoothed sign, scalar or (3,). filter_hz: cut-off of the low pass on the rate of
+        smooth: width of the smoothed sign, rad/s, scalar or (3,). filter_hz: cut-off of the low pass on the rate of
             the error, Hz (inf: none). delay: s, 0 to 1. period: s. g: of a theta, m/s^2, default 9.81.
 
-    Attributes: theta (3, 20) the model in `unit`; kp, ki, kd (3,); limit (3,).
+    Attributes: theta (3, 20), the model in `unit`; kp, ki, kd (3,); limit (3,).
     Raises InputError on bad arguments, ArmError for PWM without actuators.
     """
 
@@ -69,20 +71,21 @@ class ComputedTorque(Controller):
         self.set_gains(gains("kp", kp), gains("ki", ki), gains("kd", kd))
 
     def header(self):
-        """Lines for the head of a recording: gains, filter, delay, and the model as 20 numbers for each joint."""
+        """Return what the head of a recording says: gains, filter, delay, and the model, 20 numbers per joint."""
         return {**super().header(), "delay_s": f"{self.parameters[law.DELAY]:g}", "model_unit": self.unit}
 
     @property
     def theta(self):
-        """The model inside, (3, 20), in `unit`."""
+        """The model that the law uses, (3, 20), in `unit`."""
         return self.parameters[law.THETA :].reshape(3, 20).copy()
 
 
 def model_in_unit(model, limit_pwm=None, limit=None, g=None):
-    """(theta (3, 20), gravity, unit, limit) of a model: an Arm, a theta, or an Estimate, which says its own unit.
+    """Return (theta (3, 20), gravity, unit, limit) of a model: an Arm, a theta, or an Estimate, which has its own unit.
 
-    An Arm or a theta is in PWM counts if `limit_pwm` is given, else in N m. In PWM counts the limit is 255 if none is
-    given.
+    An Arm or a theta is taken in PWM counts if `limit_pwm` is given, else in N m. In PWM counts the limit is 255 if
+    none is given. Raises InputError if the limit is in another unit than the Estimate, ArmError for PWM without
+    actuators.
     """
     unit, bound = unit_of(limit_pwm, limit)
     if hasattr(model, "theta") and hasattr(model, "unit"):  # an Estimate

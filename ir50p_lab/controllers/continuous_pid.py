@@ -1,4 +1,4 @@
-"""The PID of the textbook, in continuous time: the thesis's simulation case (2.3), Tables 2.1-2.3."""
+"""The PID of the textbook, in continuous time, as the thesis simulates it (2.3), Tables 2.1-2.3."""
 
 import numpy as np
 
@@ -9,11 +9,11 @@ from ir50p_lab.controllers.base import gains, limits, three
 class ContinuousPID:
     """u(t) = kp e + ki int e dt + kd de/dt at every instant, with the true velocity    (2.3)
 
-    No computer runs it: it has no sampling period, filter or delay. It exists to reproduce the thesis's Simulink
-    figures and to compare with the sampled `PID`.
+    No computer runs this controller: it has no sampling period, filter or delay. It is here to reproduce the thesis's
+    Simulink figures and to compare with the sampled `PID`.
 
-    Args: kp, ki, kd: (3,) N m per rad, per rad s, per rad/s; limit: N m, scalar or (3,), None: not limited (the
-    integral then rests while the command is limited and the error would push it further).
+    Args: kp, ki, kd: (3,) N m per rad, per rad s, per rad/s; limit: N m, scalar or (3,), None: not limited (with a
+    limit the integral rests while the command is limited and the error would drive it further).
     Attributes: kp, ki, kd, limit (3,); parameters (12,): kp, ki, kd, limit in a row, as the compiled loop takes them.
     """
 

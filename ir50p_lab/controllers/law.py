@@ -1,7 +1,7 @@
 """The sampled laws as one compiled step: PID and computed torque.
 
-Error and its rate, prediction, integral and limits are the same for both; computed torque asks a model of the arm for
-the acceleration that the PID's sum stands for. The error is e = q - q_ref throughout.
+Error and rate, prediction, integral and limits are the same for both. What is the command of the PID is, for computed
+torque, an acceleration, which a model of the arm turns into the command. The error is e = q - q_ref throughout.
 """
 
 import math
@@ -21,7 +21,7 @@ GROWTH, N_STATES = 20, 23
 
 @jit()
 def elapsed(p, s, t):
-    """s since the last sample: the period, unless the cycle was late or early (then its true length)."""
+    """Return the time since the last sample, s: the period, or the true length of a cycle that was late or early."""
     dt = p[PERIOD]
     if s[STARTED] > 0.0 and abs(t - s[TIME] - dt) > 1e-6 * dt:
         dt = max(t - s[TIME], 0.0)
@@ -30,7 +30,7 @@ def elapsed(p, s, t):
 
 @jit()
 def measure_error(p, s, q, r, dt):
-    """Error e = q - q_ref and its rate into s[ERROR], s[SLOPE], each joint; the low pass has its memory in s[RATE]."""
+    """Write each joint's error e = q - q_ref into s[ERROR], its rate into s[SLOPE]; the low pass keeps s[RATE]."""
     started = s[STARTED] > 0.0
     blend = 1.0 - math.exp(-p[FILTER_RATE] * dt)
     position_blend = 1.0 - math.exp(-p[POSITION_RATE] * dt) if p[POSITION_RATE] > 0.0 else 1.0
@@ -52,19 +52,19 @@ def measure_error(p, s, q, r, dt):
 
 @jit()
 def soft_sign(x, smooth):
-    """sgn x, but a line through zero of width about 2 smooth: what it is multiplied with does not chatter."""
+    """Return sgn x with a line through zero of width about 2 smooth, so that a product with it does not chatter."""
     return math.tanh(x / smooth) if smooth > 0.0 else cf.sign(x)
 
 
 @jit()
 def error_ahead(p, s, i):
-    """Error of joint i at the moment when the command acts."""
+    """Return the error of joint i at the moment when the command acts."""
     return s[ERROR + i] + p[DELAY] * s[SLOPE + i]
 
 
 @jit()
 def through_model(p, s, r, u):
-    """The command before limits from the acceleration that the error asks for, in u: inverse dynamics of it (2.19)."""
+    """Turn the acceleration in u, which the error asks for, into the command before limits: inverse dynamics (2.19)."""
     theta = p[THETA : THETA + 60].reshape((3, 20))
     d = p[DELAY]
     # the reference when the command acts
@@ -87,7 +87,7 @@ def through_model(p, s, r, u):
 
 @jit()
 def command(p, s, r, u):
-    """The command before limits, into u."""
+    """Write the command before limits into u."""
     for i in range(3):
         proportional = p[KD + i] * s[SLOPE + i] + p[KP + i] * error_ahead(p, s, i)
         u[i] = -proportional - (s[INTEGRAL + i] + s[GROWTH + i])
@@ -97,7 +97,10 @@ def command(p, s, r, u):
 
 @jit()
 def law_step(p, s, t, q, r, u):
-    """One sample: reads parameters p, state s, time t, measured q (3,), reference r (3, 3); writes s and u (3,)."""
+    """Take one sample: parameters p, state s, time t, measured q (3,), reference r (3, 3).
+
+    Updates s and fills u (3,).
+    """
     dt = elapsed(p, s, t)
     measure_error(p, s, q, r, dt)
     for i in range(3):

@@ -1,4 +1,4 @@
-"""The independent-joint PID as it runs on a computer: sampled, filtered, limited, without windup or bumps (2.3)."""
+"""The independent-joint PID as it runs on a computer: sampled, filtered and limited, without windup or bumps (2.3)."""
 
 from ir50p_lab.controllers import law
 from ir50p_lab.controllers.base import Controller, gains, unit_of
@@ -10,21 +10,21 @@ class PID(Controller):
 
         u = kp e + I + kd (qd_ref - v),  e = q_ref - q,  I <- I + ki e T       (2.1)-(2.3), with e = q_ref - q (2.4)
 
-    - derivative on the measurement: v is the difference quotient of q behind a first-order low pass, so that a jump
+    - Derivative on the measurement: v is the difference quotient of q behind a first-order low pass, so that a jump
       of the set point gives no kick; a moving reference brings its own velocity. derivative_on="error" is the textbook
-      form (2.3), to see the kick;
-    - anti-windup: the integral rests while the command is limited and the error would push it further;
-    - limits: |u| <= limit, and the applied value is what `step` returns;
-    - bumpless: `set_gains` changes gains in the middle of a run without a jump of u, the integral takes up the
-      difference;
-    - a late cycle is integrated over its true length;
+      form (2.3), which shows the kick.
+    - Anti-windup: the integral rests while the command is limited and the error would drive it further.
+    - Limits: |u| <= limit, and `step` returns the command after limits.
+    - Bumpless: `set_gains` changes gains in the middle of a run without a jump of u; the integral takes up the
+      difference.
+    - A late cycle is integrated over its true length.
     - position_filter_hz filters the measured q itself, before everything else, as the thesis does (4.1.3): less noise
-      in u, and a lag of 1/(2 pi position_filter_hz) s that makes the loop swing. Off unless asked for.
+      in u, but a lag of 1/(2 pi position_filter_hz) s that makes the loop swing. It is off unless you ask for it.
 
     Args:
         kp, ki, kd: (3,), command per rad, per rad s, and per rad/s.
         limit_pwm: limit of the command in PWM counts (the command is then in PWM), scalar or (3,); or
-        limit: limit in N m, scalar or (3,). Give one; with neither the command is in N m and not limited.
+        limit: limit in N m, scalar or (3,). Give one of them; with neither the command is in N m and not limited.
         period: sampling period, s. filter_hz: cut-off of the velocity filter, Hz (inf: none).
         position_filter_hz: cut-off of a first-order low pass on q, Hz (None: q as it is measured).
         derivative_on: "measurement" or "error". anti_windup: False shows what windup does.

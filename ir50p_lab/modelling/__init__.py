@@ -1,6 +1,6 @@
 """From a drawing to the equations of motion: pose, kinematics, symbolic derivation, dynamics, friction, motors.
 
-Names are loaded on first use: importing this package costs nothing.
+Names are loaded on first use, so importing this package costs nothing.
 """
 
 from ir50p_lab import lazy

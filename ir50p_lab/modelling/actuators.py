@@ -1,4 +1,4 @@
-"""The three DC motors with gears, in honest units (1.118)-(1.120 corrected)."""
+"""The three DC motors with their gears, in consistent units (1.118)-(1.120 corrected)."""
 
 from dataclasses import dataclass, field, fields
 from functools import cached_property
@@ -12,14 +12,14 @@ from ir50p_lab.modelling.kernel import same_shape
 
 @dataclass(frozen=True, kw_only=True)
 class Actuators:
-    """DC motors behind reduction gears, driven by a bridge in PWM counts.
+    """DC motors behind reduction gears, driven by a bridge whose command is given in PWM counts.
 
-    With u the voltage at the motor, tau the torque at the joint and the small inductance left out:
+    With u the voltage at the motor, tau the torque at the joint, and the small inductance neglected:
 
         u = Ra / (kt N) [tau + N^2 Jm qdd] + ke N qd        (1.118)-(1.120) corrected
 
-    The thesis adds volts to newton metres, takes N Jm for the reflected inertia N^2 Jm and leaves the
-    back-EMF out (it then hides in the viscous friction).
+    The thesis adds volts to newton metres, takes N Jm for the reflected inertia N^2 Jm and leaves out the
+    back-EMF (which then hides in the viscous friction).
 
     ========= ======================================= ===================
     field     meaning                                 shape, unit
@@ -33,7 +33,8 @@ class Actuators:
     limit_pwm PWM count that gives the full supply    counts
     ========= ======================================= ===================
 
-    Raises ArmError if a value is not positive (Jm may be 0), InputError for wrong shapes and what is not a number.
+    Raises ArmError if a value is not positive (Jm may be 0), and InputError if a shape is wrong or a value is
+    not a number.
     """
 
     N: tuple = field(metadata={"comment": "gear ratio"})
@@ -55,10 +56,17 @@ class Actuators:
 
     @classmethod
     def from_joint_data(cls, *, stall_torque, no_load_speed, reflected_inertia, N, V, limit_pwm=255.0):
-        """Motors from what can be measured at the joint at supply `V`.
+        """Make the Actuators from what can be measured at the joints with supply `V`.
 
-        Args: stall_torque (3,) N m, no_load_speed (3,) rad/s, reflected_inertia = N^2 Jm (3,) kg m^2,
-        gear ratio N (3,), V volts. With kt = ke (SI, an ideal DC machine): ke = V/(N w0), Ra = kt N V/tau_stall.
+        The motors are taken as ideal DC machines, kt = ke in SI units: ke = V/(N w0) and Ra = kt N V/tau_stall,
+        with w0 the no-load speed of the joint.
+
+        Args:
+            stall_torque: (3,) N m; no_load_speed: (3,) rad/s; both at the joint, > 0.
+            reflected_inertia: N^2 Jm, (3,) kg m^2. N: gear ratio, (3,), > 0. V: supply, V.
+            limit_pwm: PWM count that gives the full supply.
+
+        Returns: Actuators. Raises ArmError for values that are not positive, InputError for wrong shapes.
         """
         stall_torque = vector3("stall_torque", stall_torque, unit="N m")
         no_load_speed = vector3("no_load_speed", no_load_speed, unit="rad/s")
@@ -75,33 +83,34 @@ class Actuators:
 
     @cached_property
     def reflected_inertia(self):
-        """N^2 Jm: rotor inertia felt at the joint, (3,) kg m^2."""
+        """Rotor inertia N^2 Jm as it is felt at the joint, (3,) kg m^2."""
         return self._array("N") ** 2 * self._array("Jm")
 
     @cached_property
     def stall_torque(self):
-        """Torque at the joint at full supply and no speed, (3,) N m."""
+        """Torque at the joint with full supply and at standstill, (3,) N m."""
         return self._array("N") * self._array("kt") * self.V / self._array("Ra")
 
     @cached_property
     def no_load_speed(self):
-        """Joint speed at full supply and no torque, (3,) rad/s."""
+        """Speed of the joint with full supply and without torque, (3,) rad/s."""
         return self.V / (self._array("N") * self._array("ke"))
 
     @cached_property
     def gain(self):
-        """K: joint torque per PWM count at no speed, (3,) N m per count."""
+        """Gain K: the joint torque that one PWM count makes at standstill, (3,) N m per count."""
         return self.stall_torque / self.limit_pwm
 
     @cached_property
     def back_emf_damping(self):
-        """kt ke N^2 / Ra: the brake that a driven DC motor is, felt at the joint, (3,) N m s/rad."""
+        """Damping kt ke N^2 / Ra, by which a driven DC motor brakes itself, as felt at the joint, (3,) N m s/rad."""
         return self._array("kt") * self._array("ke") * self._array("N") ** 2 / self._array("Ra")
 
     def voltage(self, tau, qd, qdd=(0.0, 0.0, 0.0)):
-        """Motor voltage for joint torque tau at velocity qd and acceleration qdd (1.120 corrected), V.
+        """Return the motor voltage for joint torque tau at velocity qd and acceleration qdd (1.120 corrected).
 
-        tau, qd, qdd: (3,) or (n, 3) in N m, rad/s, rad/s^2. The result may exceed the supply: compare with `V`.
+        Args: tau, qd, qdd: (3,) or (n, 3), N m, rad/s and rad/s^2; qdd is zero by default.
+        Returns: the same shape, V. It may exceed the supply: compare it with `V`. Raises InputError for wrong shapes.
         """
         tau, qd, qdd = same_shape(tau=tau, qd=qd, qdd=qdd)
         N = self._array("N")

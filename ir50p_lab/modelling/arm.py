@@ -1,4 +1,4 @@
-"""The arm: a 3-DOF elbow manipulator by its lengths, masses and inertias, checked when it is made."""
+"""The arm: a 3-DOF elbow manipulator, described by its lengths, masses and inertias, and checked when it is made."""
 
 import dataclasses
 import warnings
@@ -22,28 +22,28 @@ class Arm:
     """A 3-DOF elbow arm with in-line links: waist (vertical axis), shoulder, elbow.
 
     Standard DH (Table 1.1 corrected): theta = q; d = (l1, 0, 0); a = (0, l2, l3); alpha = (+90, 0, -90) deg.
-    Zero pose: upper arm and forearm horizontal and stretched along x; q2, q3 > 0 lift them.
+    In the zero pose upper arm and forearm lie stretched along x, horizontally; q2 > 0 and q3 > 0 lift them.
 
     ========= ================================================================== ============
     field     meaning                                                            unit
     ========= ================================================================== ============
-    l         column height, upper arm, forearm                                  (3,) m
+    l         height of the column, lengths of upper arm and forearm             (3,) m
     m         masses of the links                                                (3,) kg
     lc        centre of mass on the link axis, from the joint (link 1: height)   (3,) m
     Ixx..Izz  moments of inertia about the centre of mass in the link frame      (3,) kg m^2
     friction  Friction at the joints                                             N m
     actuators Actuators, or None for an arm driven by torque                     SI
     q_min/max joint limits                                                       (3,) rad
-    g         gravity                                                            m/s^2
-    payload   mass at the tip, counted in link 3 (`with_payload`)                kg
+    g         gravitational acceleration                                         m/s^2
+    payload   mass at the tip, already counted in link 3 (see `with_payload`)    kg
     ========= ================================================================== ============
 
     Link frames: link 1 has z along the column; links 2 and 3 have x along the link and z along the joint axis.
-    Only such in-line links are expressed exactly by the 20 parameters theta. `Arm.from_rigid_bodies` takes
-    full centres of mass and inertia tensors and refuses the others; `derive(general=True)` can still derive them.
+    The 20 parameters theta are exact for such in-line links only. `Arm.from_rigid_bodies` takes full centres of
+    mass and inertia tensors and refuses every arm that is not in-line; `derive(general=True)` can still derive it.
 
-    Raises ArmError for what no rigid body can have, InputError for wrong shapes and what is not a number; warns
-    SuspiciousArmWarning for what is hardly meant (the list stays in `suspicions`).
+    Raises ArmError for what no rigid body can have, and InputError if a shape is wrong or a value is not a number.
+    Warns (SuspiciousArmWarning) of what is possible but hardly meant; `suspicions` keeps these sentences.
     """
 
     name: str = "my arm"
@@ -96,7 +96,7 @@ class Arm:
 
     @cached_property
     def suspicions(self):
-        """What is possible but hardly meant, as a tuple of sentences (empty for a plausible arm)."""
+        """What is possible but hardly meant, as a tuple of sentences; it is empty for a plausible arm."""
         found = []
         for i, (l, lc, *limits) in enumerate(zip(self.l, self.lc, self.q_min, self.q_max, strict=True), start=1):
             if l > 0 and lc > l:
@@ -114,16 +114,16 @@ class Arm:
 
     @classmethod
     def from_rigid_bodies(cls, *, l, m, com, inertia, **options):
-        """An arm from full centres of mass and inertia tensors, refused with the reason if not in-line.
+        """Make an arm from full centres of mass and inertia tensors; refuse one that is not in-line, with the reason.
 
         Args:
             l, m: as in Arm.
-            com: (3, 3) m, one row per link, in the link frame with origin at the joint.
-            inertia: (3, 3, 3) kg m^2, one tensor per link about its centre of mass in the link frame.
+            com: (3, 3) m, centres of mass, one row per link, in the link frame with its origin at the joint.
+            inertia: (3, 3, 3) kg m^2, one tensor per link about its centre of mass, in the link frame.
             options: the other fields of Arm.
 
-        Raises ArmError if a centre of mass is off the link axis or a tensor has products of inertia
-        (1.104 corrected: I = [[Ixx, -Ixy, -Ixz], ...]).
+        Returns: Arm. Raises ArmError if a shape is wrong, a centre of mass is off the link axis, or a tensor has
+        products of inertia (1.104 corrected: I = [[Ixx, -Ixy, -Ixz], ...]).
         """
         com, inertia = vectors3("com", com, unit="m"), np.asarray(inertia, dtype=float)
         if com.shape != (3, 3) or inertia.shape != (3, 3, 3) or not np.isfinite(inertia).all():
@@ -143,16 +143,16 @@ class Arm:
 
     @property
     def reach(self):
-        """Largest distance of the tip from the shoulder, l2 + l3, m."""
+        """The largest distance of the tip from the shoulder, l2 + l3, m."""
         return self.l[1] + self.l[2]
 
     @cached_property
     def theta(self):
-        """The 20 parameters, (3, 20): three equal rows, torque in N m.
+        """The 20 parameters as (3, 20), three equal rows; with them torques are in N m.
 
-        Order and meaning: the in-line rigid arm with rotors, then fv, fc per joint, Tf, j3 (2.50 corrected).
-        theta 7 and 8 (the thesis's constant products of inertia) are 0: no rigid body has them.
-        The Stribeck part of the friction is not linear in parameters and is not in theta.
+        They are, in order: the rigid in-line arm with rotors, then fv and fc of each joint, Tf, j3 (2.50 corrected).
+        theta 7 and 8 (the thesis's constant products of inertia) are 0, because no rigid body has them.
+        The Stribeck part of the friction is not linear in the parameters, so theta does not hold it.
         """
         (_, m2, m3), (_, l2, _), (_, lc2, lc3) = self.m, self.l, self.lc
         _, X2, X3 = self.Ixx
@@ -177,15 +177,16 @@ class Arm:
 
     @cached_property
     def lengths(self):
-        """`l` as an array, (3,) m, for the compiled kernels."""
+        """The lengths `l` as an array, (3,) m, for the compiled kernels."""
         return read_only(np.array(self.l))
 
     @cached_property
     def theta_pwm(self):
         """The 20 parameters of the arm as seen from the PWM counts, (3, 20): row i is divided by the gain K_i.
 
-        u_i = (row i of Phi theta) / K_i, with the back-EMF as viscous friction. The rows differ when the
-        motors do: a fit with one shared theta is then wrong (2.47 corrected). Raises ArmError without actuators.
+        u_i = (row i of Phi theta) / K_i, with the back-EMF as viscous friction. The rows differ if the motors
+        do: then a fit with one theta for all joints is wrong (2.47 corrected). Raises ArmError for an arm
+        without actuators.
         """
         if self.actuators is None:
             raise ArmError(f"{self.name} has no actuators: it is driven by torque, use theta (N m)")
@@ -194,11 +195,14 @@ class Arm:
         return read_only(rows / self.actuators.gain[:, None])
 
     def without_friction(self):
-        """The same arm with no friction at all (rotor inertia stays)."""
+        """Return the same arm with no friction at all; the rotor inertia stays."""
         return dataclasses.replace(self, friction=Friction())
 
     def with_payload(self, mass):
-        """The arm with a point mass (kg) at its tip: link 3 has another mass, centre of mass and inertia."""
+        """Return the arm with a point mass `mass` (kg) at its tip.
+
+        Mass, centre of mass and inertia of link 3 change with it, and `payload` grows by `mass`.
+        """
         m3, lc3, l3 = self.m[2], self.lc[2], self.l[2]
         total = m3 + mass
         centre = (m3 * lc3 + mass * l3) / total
@@ -218,19 +222,20 @@ class Arm:
         return self.with_payload(-self.payload) if self.payload else self
 
     def save(self, path):
-        """Write the arm to `path` as TOML, with units in comments. Read it back with Arm.load."""
+        """Write the arm to `path` as TOML, with the units in comments. Arm.load reads it back."""
         write_arm(self, path)
 
     @classmethod
     def load(cls, path):
-        """Read an arm from a TOML file. Raises ArmError naming the file and what is wrong in it."""
+        """Read an arm from a TOML file at `path`. Raises ArmError, which names the file and what is wrong in it."""
         return read_arm(cls, path)
 
 
 def refuse_impossible_inertia(who, principal):
-    """Raise ArmError if moments of inertia (3,) about one point's axes belong to no rigid body.
+    """Raise ArmError if no rigid body has the moments of inertia `principal` (3,) kg m^2 about axes through one point.
 
-    None may be negative and none larger than the sum of the other two: Ixx + Iyy - Izz = 2 int z^2 dm >= 0.
+    None may be negative, and none may exceed the sum of the other two: Ixx + Iyy - Izz = 2 int z^2 dm >= 0.
+    `who` names the body in the message.
     """
     (least, least_axis), _, (most, most_axis) = sorted(zip(principal, ("Ixx", "Iyy", "Izz"), strict=True))
     if least < 0:
@@ -244,6 +249,6 @@ def refuse_impossible_inertia(who, principal):
 
 
 def read_only(array):
-    """Lock an array that is shared, so that no student's cell changes an arm by accident."""
+    """Lock an array that is shared, so that no student's cell changes an arm by accident; return the array."""
     array.setflags(write=False)
     return array

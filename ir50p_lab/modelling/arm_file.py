@@ -1,4 +1,4 @@
-"""Arms as TOML files: readable, with units in comments."""
+"""Arms as TOML files that are easy to read, with the units in comments."""
 
 import dataclasses
 import tomllib
@@ -15,7 +15,7 @@ _PARTS = {"friction": Friction, "actuators": Actuators}
 
 
 def write_arm(arm, path):
-    """Write `arm` to `path` (TOML). Every number is written with all its digits: reading gives the same arm."""
+    """Write `arm` to `path` as TOML, every number with all its digits, so that reading gives the same arm."""
     document = tomlkit.document()
     document.add(tomlkit.comment("An arm for the IR50P lab book. SI units; joints and links 1, 2, 3 in order."))
     _fill(document, arm)
@@ -35,10 +35,10 @@ def _fill(table, part):
 
 
 def read_arm(cls, path):
-    """Read an arm, an object of `cls`, from a TOML file.
+    """Read an arm, an object of class `cls`, from a TOML file.
 
-    Raises ArmError, naming the file, if it is missing, is not TOML, lacks a field, has a field that is not
-    known (with the known ones), or describes an impossible arm.
+    Raises ArmError, which names the file, if it is missing, is not TOML, lacks a field, has an unknown field (then
+    the known ones are listed), or describes an impossible arm.
     """
     try:
         data = tomllib.loads(read_text(path, ArmError))

@@ -11,12 +11,12 @@ _SIN_ALPHA = (1.0, 0.0, -1.0)
 
 
 def dh_matrix(theta, d, a, alpha):
-    """One Denavit-Hartenberg step A = Rot_z(theta) Trans_z(d) Trans_x(a) Rot_x(alpha)    (1.23)-(1.29)
+    """Return one Denavit-Hartenberg step A = Rot_z(theta) Trans_z(d) Trans_x(a) Rot_x(alpha)    (1.23)-(1.29)
 
-    theta turns about the old z (the thesis's text under (1.21) says x), alpha about the new x.
+    theta turns about the old z axis (the thesis's text under (1.21) says x), alpha about the new x axis.
 
-    Args: theta, alpha rad; d, a m; scalars or arrays of one shape (n,).
-    Returns: (4, 4) or (n, 4, 4), takes coordinates of frame i to frame i-1.
+    Args: theta, alpha: rad; d, a: m; scalars, or arrays of one shape (n,).
+    Returns: (4, 4) or (n, 4, 4); it takes coordinates of frame i to frame i-1.
     """
     return _step(theta, d, a, np.cos(alpha), np.sin(alpha))
 
@@ -32,7 +32,7 @@ def _step(theta, d, a, cos_alpha, sin_alpha):
 
 
 def lengths(arm):
-    """l1, l2, l3 as an array (3,) m. Raises InputError if `arm` is not an Arm."""
+    """Return l1, l2, l3 as an array (3,) m. Raises InputError if `arm` is not an Arm."""
     try:
         return arm.lengths
     except AttributeError:
@@ -40,16 +40,16 @@ def lengths(arm):
 
 
 def dh_table(arm, q):
-    """Table 1.1 (header corrected): one row theta, d, a, alpha per joint.
+    """Return Table 1.1 (header corrected) at the pose q: for each joint one row theta, d, a, alpha.
 
-    Args: arm: Arm; q: (3,) rad. Returns: (3, 4), units rad, m, m, rad.
+    Args: arm: Arm; q: (3,) rad. Returns: (3, 4), columns in rad, m, m, rad.
     """
     l1, l2, l3 = lengths(arm)
     return np.column_stack([vector3("q", q), (l1, 0.0, 0.0), (0.0, l2, l3), (np.pi / 2, 0.0, -np.pi / 2)])
 
 
 def frames(arm, q):
-    """All frames of the arm in base coordinates: T^0_0 = I, T^0_1, T^0_2, T^0_3    (1.11 corrected), (1.15)
+    """Return all frames of the arm in base coordinates: T^0_0 = I, T^0_1, T^0_2, T^0_3    (1.11 corrected), (1.15)
 
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (4, 4, 4) or (n, 4, 4, 4); element i takes coordinates of frame i to the base.
@@ -72,10 +72,11 @@ def frames(arm, q):
 
 
 def transform(arm, q, i, j):
-    """T^i_j: takes coordinates of frame j to frame i; i and j in 0..3 in any order    (1.11)-(1.13) corrected
+    """Return T^i_j, which takes coordinates of frame j to frame i    (1.11)-(1.13) corrected
 
+    i and j are 0 to 3, in any order.
     T^i_j = A_{i+1} ... A_j for i < j (the thesis stops one matrix early), I for i = j, and the inverse of
-    T^j_i for i > j (the thesis inverts the matrix into itself).
+    T^j_i for i > j (the thesis writes the matrix as the inverse of itself).
 
     Args: arm: Arm; q: (3,) or (n, 3) rad. Returns: (4, 4) or (n, 4, 4).
     """
@@ -94,7 +95,7 @@ def _tip(l, q, p):
 
 
 def forward_kinematics(arm, q):
-    """Position of the tip in base coordinates, the last column of (1.31 corrected).
+    """Return the position of the tip in base coordinates, the last column of (1.31 corrected).
 
     p = [c1 (l2 c2 + l3 c23), s1 (l2 c2 + l3 c23), l1 + l2 s2 + l3 s23]
 

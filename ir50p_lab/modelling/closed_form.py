@@ -1,8 +1,8 @@
 """The equations of motion as scalar functions of theta, compiled: M, C, g, friction, forward dynamics.
 
 Everything here is written once, in terms of theta (3, 20): row i holds the coefficients of joint i (thesis 2.48-2.51
-corrected). An arm given by masses has three equal rows; an identified arm has its own row per joint, and M is then
-not symmetric. The loops of simulation and identification call these functions; for arrays use `dynamics`.
+corrected). An arm given by its masses has three equal rows. An identified arm has a row of its own for each joint, and
+then M is not symmetric. The loops of simulation and identification call these functions; for arrays use `dynamics`.
 
 Index in a row (thesis number minus 1): 0-9 and 19 inertia, 10-15 viscous and Coulomb friction, 16-18 offsets.
 """
@@ -16,9 +16,10 @@ from ir50p_lab.jit import jit, numba
 
 @jit()
 def sincos(x):
-    """sin x and cos x to the last bit or two, |x| up to a million rad: compiled in line, several run at once.
+    """Return sin x and cos x, right to the last bit or two for |x| up to a million rad.
 
-    Cody-Waite reduction to [-pi/4, pi/4], then minimax polynomials (Moshier's Cephes coefficients).
+    Compiled in line, several run at once: Cody-Waite reduction to [-pi/4, pi/4], then minimax polynomials (Moshier's
+    Cephes coefficients).
     """
     k = np.rint(x * 0.6366197723675814)  # 2/pi
     y = ((x - k * 1.5707963267341256) - k * 6.077100506303966e-11) - k * 2.0222662487959506e-21
@@ -45,13 +46,13 @@ if numba is None:
 
 @jit()
 def not_denormal(x):
-    """x, or 0 if it is too small to matter: numbers below 1e-308 take the processor a hundred times as long."""
+    """Return x, or 0 if x is too small to matter: numbers below 1e-308 take the processor a hundred times as long."""
     return x if abs(x) > 1e-100 else 0.0
 
 
 @jit()
 def mass_terms(theta, c2, c3, c23):
-    """M(q) as nine scalars by rows, kg m^2 (or PWM s^2/rad): M11 .. M33    (list of 1.5.3a corrected)."""
+    """Return M(q) as nine scalars by rows, M11 .. M33, kg m^2 (or PWM s^2/rad)    (list of 1.5.3a corrected)."""
     M11 = theta[0, 0] + theta[0, 1] * (c2 * c2) + theta[0, 4] * (c23 * c23) + 2 * theta[0, 5] * (c2 * c23)
     M12 = theta[0, 6] + theta[0, 7]
     M13 = theta[0, 7]
@@ -66,7 +67,7 @@ def mass_terms(theta, c2, c3, c23):
 
 @jit()
 def coriolis_factors(theta, row, c2, s2, s3, c23, s23):
-    """alpha = -dM11/dq2 / 2, beta = -dM11/dq3 / 2, k = -dM23/dq3, from one row of theta    (1.93), (1.96)."""
+    """Return alpha = -dM11/dq2 / 2, beta = -dM11/dq3 / 2 and k = -dM23/dq3 from one row of theta    (1.93), (1.96)."""
     t2, t5, t6 = theta[row, 1], theta[row, 4], theta[row, 5]
     alpha = t2 * (s2 * c2) + t5 * (s23 * c23) + t6 * (s23 * c2 + c23 * s2)
     beta = t5 * (s23 * c23) + t6 * (s23 * c2)
@@ -75,7 +76,7 @@ def coriolis_factors(theta, row, c2, s2, s3, c23, s23):
 
 @jit()
 def coriolis_torques(theta, c2, s2, s3, c23, s23, a, b, c):
-    """C(q, qd) qd as three scalars, qd = (a, b, c)    (1.97) corrected: b233 = -k stands in row 2."""
+    """Return C(q, qd) qd as three scalars, with qd = (a, b, c)    (1.97) corrected: b233 = -k stands in row 2."""
     alpha1, beta1, _ = coriolis_factors(theta, 0, c2, s2, s3, c23, s23)
     alpha2, _, k2 = coriolis_factors(theta, 1, c2, s2, s3, c23, s23)
     _, beta3, k3 = coriolis_factors(theta, 2, c2, s2, s3, c23, s23)
@@ -87,20 +88,20 @@ def coriolis_torques(theta, c2, s2, s3, c23, s23, a, b, c):
 
 @jit()
 def gravity_torques(theta, gravity, c2, c23):
-    """g(q) of joints 2 and 3 (joint 1 carries none)    (1.114), grouping of 1.5.3c corrected."""
+    """Return g(q) of joints 2 and 3; joint 1 carries no weight    (1.114), grouping of 1.5.3c corrected."""
     g2 = gravity * (theta[1, 2] * c2 + theta[1, 3] * c23)
     return g2, gravity * theta[2, 3] * c23
 
 
 @jit()
 def sign(x):
-    """-1, 0 or 1."""
+    """Return the sign of x: -1, 0 or 1."""
     return 1.0 if x > 0 else (-1.0 if x < 0 else 0.0)
 
 
 @jit()
 def friction_torques(theta, a, b, c):
-    """Viscous and Coulomb friction and offset, linear in theta    (1.115), (1.118)."""
+    """Return viscous and Coulomb friction and offset as three scalars, linear in theta    (1.115), (1.118)."""
     f1 = theta[0, 10] * a + theta[0, 11] * sign(a) + theta[0, 16]
     f2 = theta[1, 12] * b + theta[1, 13] * sign(b) + theta[1, 17]
     f3 = theta[2, 14] * c + theta[2, 15] * sign(c) + theta[2, 18]
@@ -109,7 +110,7 @@ def friction_torques(theta, a, b, c):
 
 @jit()
 def bias_torques(theta, gravity, q2, q3, a, b, c):
-    """C qd + g + friction, and the cosines that M needs: (n1, n2, n3, c2, c3, c23)."""
+    """Return C qd + g + friction, and the cosines that M needs: (n1, n2, n3, c2, c3, c23)."""
     s2, c2 = sincos(q2)
     s3, c3 = sincos(q3)
     c23, s23 = c2 * c3 - s2 * s3, s2 * c3 + c2 * s3
@@ -121,7 +122,7 @@ def bias_torques(theta, gravity, q2, q3, a, b, c):
 
 @jit()
 def inverse(theta, gravity, q2, q3, a, b, c, A, B, C):
-    """Torques for accelerations (A, B, C): M qdd + C qd + g + friction    (1.74)."""
+    """Return the torques for the accelerations (A, B, C): M qdd + C qd + g + friction    (1.74)."""
     n1, n2, n3, c2, c3, c23 = bias_torques(theta, gravity, q2, q3, a, b, c)
     M11, M12, M13, M21, M22, M23, M31, M32, M33 = mass_terms(theta, c2, c3, c23)
     tau1 = M11 * A + M12 * B + M13 * C + n1
@@ -132,9 +133,9 @@ def inverse(theta, gravity, q2, q3, a, b, c, A, B, C):
 
 @jit()
 def solve_mass(M, r1, r2, r3):
-    """Solve M x = r for the nine scalars M: x1, x2, x3, and det M (0 or NaN: singular).
+    """Solve M x = r, with M as nine scalars: return x1, x2, x3, and det M (0 or NaN if M is singular).
 
-    Cramer's rule, which for 3 x 3 inertia matrices loses no digits that matter (tested against LAPACK).
+    By Cramer's rule, which loses no digits that matter for 3 x 3 inertia matrices (tested against LAPACK).
     """
     M11, M12, M13, M21, M22, M23, M31, M32, M33 = M
     if M12 == 0.0 and M13 == 0.0 and M21 == 0.0 and M31 == 0.0:
@@ -151,6 +152,6 @@ def solve_mass(M, r1, r2, r3):
 
 @jit()
 def forward(theta, gravity, q2, q3, a, b, c, u1, u2, u3):
-    """Accelerations for torques u: M^-1 (u - C qd - g - friction), and det M."""
+    """Return the accelerations for the torques u, M^-1 (u - C qd - g - friction), and det M."""
     n1, n2, n3, c2, c3, c23 = bias_torques(theta, gravity, q2, q3, a, b, c)
     return solve_mass(mass_terms(theta, c2, c3, c23), u1 - n1, u2 - n2, u3 - n3)

@@ -1,16 +1,16 @@
-"""The steps of the symbolic derivation, from the frames to M, C and g, and formulas put in order for reading."""
+"""The steps of the symbolic derivation, from the frames to M, C and g; and how its formulas are ordered for reading."""
 
 import sympy
 from sympy import cos, sin
 
 
 def turn(angle):
-    """Rotation about z, (3, 3)."""
+    """Return the rotation about z by `angle`, a sympy matrix (3, 3)."""
     return sympy.Matrix([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0], [0, 0, 1]])
 
 
 def chain(q, l1, l2, l3):
-    """Frames T^0_0 ... T^0_3 of the DH chain (1.29), and the rotations of the three link frames.
+    """Return the frames T^0_0 ... T^0_3 of the DH chain (1.29), and the rotations of the three link frames.
 
     The link frame of link i is its DH frame before the twist alpha_i: link 1 turns about z0; links 2 and 3 have
     x along the link and z along the joint axis. Axes 2 and 3 are parallel, so that their angles add.
@@ -28,7 +28,7 @@ def chain(q, l1, l2, l3):
 
 
 def bodies(symbols, links, frames, rotations):
-    """Centres of mass p_ci in the base frame, and inertia tensors with the rotation of the frame they are given in.
+    """Return the centres of mass p_ci in the base frame, and each inertia tensor with the rotation of its frame.
 
     Returns: 3 columns (3, 1); 3 pairs (rotation, tensor).
     """
@@ -51,17 +51,17 @@ def bodies(symbols, links, frames, rotations):
 
 
 def angular_jacobians(frames):
-    """Jw of the three links, base frame: [z0 0 0], [z0 z1 0], [z0 z1 z2] (1.88 corrected: joint i has z_i-1)."""
+    """Return Jw of each link in the base frame: [z0 0 0], [z0 z1 0], [z0 z1 z2] (1.88 corrected: joint i has z_i-1)."""
     z0, z1, z2 = (frame[:3, 2] for frame in frames[:3])
     none = sympy.zeros(3, 1)
     return [sympy.Matrix.hstack(*axes) for axes in ((z0, none, none), (z0, z1, none), (z0, z1, z2))]
 
 
 def mass_matrix(q, symbols, Jv, Jw, tensors):
-    """M = sum of m Jv^T Jv + Jw^T R I R^T Jw, plus the rotors on the diagonal (1.90 corrected).
+    """Return M = sum of m Jv^T Jv + Jw^T R I R^T Jw, plus the rotors on the diagonal (1.90 corrected).
 
-    M does not change when the whole arm turns about joint 1, nor does the part of joints 2 and 3 when both links
-    turn about joint 2. So it is worked out where that is shortest: at q1 = 0, that part with the forearm level.
+    M does not change when the whole arm turns about joint 1, and the part of joints 2 and 3 does not change when both
+    links turn about joint 2. So each is worked out where that is shortest: M at q1 = 0, that part with a level forearm.
     """
     M = sympy.diag(*(symbols[f"j{i}"] for i in "123"))
     for i, jv, jw, (R, inertia) in zip("123", Jv, Jw, tensors, strict=True):
@@ -73,7 +73,7 @@ def mass_matrix(q, symbols, Jv, Jw, tensors):
 
 
 def christoffel(q, M):
-    """b[i][j][k] = 1/2 (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) (1.96)."""
+    """Return the Christoffel symbols b[i][j][k] = 1/2 (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) (1.96)."""
 
     def b(i, j, k):
         return (M[i, j].diff(q[k]) + M[i, k].diff(q[j]) - M[j, k].diff(q[i])) / 2
@@ -82,7 +82,7 @@ def christoffel(q, M):
 
 
 def ordered(expression, by):
-    """The same function to be read: common factors in front, then a sum over the parameters `by` (masses, say).
+    """Return the same function, ordered for reading: common factors, then a sum over the parameters `by` (masses, say).
 
     Each parameter is followed by its factored coefficient; parameters that share one are collected.
     """

@@ -26,10 +26,10 @@ _SIX = np.empty(6)  # gives a column of J its length: the signature of a ufunc m
 
 
 def jacobian(arm, q):
-    """Geometric Jacobian of the tip in base coordinates: [v; omega] = J qd    (1.43), (1.46)-(1.54 corrected)
+    """Return the geometric Jacobian of the tip in the base frame: [v; omega] = J qd    (1.43), (1.46)-(1.54 corrected)
 
-    Column i is [z_{i-1} x (p - o_{i-1}); z_{i-1}]: joint i turns about z of the frame before it, so that (1.34)
-    and (1.37) need the index shifted by one.
+    Column i is [z_{i-1} x (p - o_{i-1}); z_{i-1}]: joint i turns about z of the frame before it, so the indices in
+    (1.34) and (1.37) have to be shifted by one.
 
     Args: arm: Arm; q: (3,) or (n, 3) rad.
     Returns: (6, 3) or (n, 6, 3); rows 0-2 in m/rad (Jv), rows 3-5 without unit (Jw).

@@ -1,8 +1,8 @@
 """The equations of motion for poses and whole trajectories: M, C, g, inverse and forward dynamics, energy.
 
-Every function takes an Arm or a theta (3, 20) first (a single row (20,) counts for all joints). With a theta in PWM
-counts the results are in PWM counts too. An Arm carries its gravity; a theta does not and takes 9.81 m/s^2 or the
-option `g`. The equations are in `closed_form`.
+Every function takes an Arm or a theta (3, 20) as its first argument; a single row (20,) counts for all joints. With a
+theta in PWM counts the results are in PWM counts, too. An Arm carries its own gravity; a theta does not, so for it
+9.81 m/s^2 is taken, or the option `g`. The equations are in `closed_form`.
 """
 
 from collections import namedtuple
@@ -20,10 +20,10 @@ STANDARD_GRAVITY = 9.81  # m/s^2, the thesis's value; an Arm carries its own
 
 
 def as_theta(arm, g=None):
-    """(theta (3, 20), gravity) of an Arm, or of a theta given as array and its gravity `g` (m/s^2, default 9.81).
+    """Return (theta (3, 20), gravity) of an Arm, or of a theta given as an array with its `g` (m/s^2, default 9.81).
 
-    Raises InputError if `arm` is neither, has another shape, or holds a number that is not finite; if `g` is given for
-    an Arm, which carries its own, or is negative or not finite.
+    Raises InputError if `arm` is neither, has another shape, or holds a number that is not finite; and if `g` is given
+    for an Arm, which carries its own, or is negative or not finite.
     """
     if isinstance(arm, Arm):
         if g is not None:
@@ -78,11 +78,11 @@ def _mass(theta, gravity, q, M):
 
 
 def mass_matrix(arm, q):
-    """Mass matrix M(q) with rotor inertia on its diagonal    (1.90 corrected).
+    """Return the mass matrix M(q), with the rotor inertia on its diagonal    (1.90 corrected).
 
     Args: arm: Arm or theta; q: (3,) or (n, 3) rad.
-    Returns: (3, 3) or (n, 3, 3), kg m^2. Symmetric and positive definite for an Arm; row-wise for a theta
-    with unequal rows. Raises InputError.
+    Returns: (3, 3) or (n, 3, 3), kg m^2. It is symmetric and positive definite for an Arm; for a theta with unequal
+    rows each row has its own parameters. Raises InputError for wrong shapes and numbers that are not finite.
 
     >>> from ir50p_lab.modelling import IR50P, mass_matrix
     >>> mass_matrix(IR50P, [0, 0, 0]).round(3)
@@ -108,7 +108,7 @@ def _coriolis(theta, gravity, q, qd, C):
 
 
 def coriolis_matrix(arm, q, qd):
-    """C(q, qd) by Christoffel symbols (1.96): the one for which dM/dt - 2 C is skew.
+    """Return C(q, qd) by Christoffel symbols (1.96), the one choice of C for which dM/dt - 2 C is skew-symmetric.
 
     Args: arm: Arm or theta; q, qd: (3,) or (n, 3), rad and rad/s.
     Returns: (3, 3) or (n, 3, 3), N m s/rad. C qd are the centrifugal and Coriolis torques (1.97 corrected).
@@ -130,9 +130,10 @@ def _gravity(theta, gravity, q, torques):
 
 
 def gravity(arm, q, *, g=None):
-    """Gravity torques g(q) = dU/dq: what holds the arm still    (1.114), 1.5.3c corrected.
+    """Return the gravity torques g(q) = dU/dq, which hold the arm still    (1.114), 1.5.3c corrected.
 
-    Args: arm: Arm or theta; q: (3,) or (n, 3) rad; g: of a theta, m/s^2, default 9.81. Returns: shape of q, N m.
+    Args: arm: Arm or theta; q: (3,) or (n, 3) rad; g: for a theta only, m/s^2, default 9.81.
+    Returns: the shape of q, N m.
 
     >>> from ir50p_lab.modelling import IR50P, gravity
     >>> gravity(IR50P, [0, 0, 0]).round(2)
@@ -150,13 +151,14 @@ def _inverse(theta, gravity, q, qd, qdd, tau):
 
 
 def inverse_dynamics(arm, q, qd, qdd, *, g=None):
-    """Torques that make the motion: tau = M qdd + C qd + g + F    (1.74), all linear in theta.
+    """Return the torques that make a motion: tau = M qdd + C qd + g + F    (1.74), all of it linear in theta.
 
-    F is the friction in theta: fv qd + fc sgn(qd) + Tf. The Stribeck part of an Arm's friction is not linear and
-    is left to `friction_torque` and the simulation; use `arm.without_friction()` for the rigid body alone.
+    F is the friction that theta holds: fv qd + fc sgn(qd) + Tf. The Stribeck part of an Arm's friction is not linear:
+    `friction_torque` and the simulation have it. For the rigid body alone use `arm.without_friction()`.
 
-    Args: arm: Arm or theta; q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2; g: of a theta, m/s^2, default 9.81.
-    Returns: shape of q, N m (PWM counts for a theta in PWM). Raises InputError.
+    Args: arm: Arm or theta; q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2; g: for a theta only, m/s^2, default 9.81.
+    Returns: the shape of q, N m (PWM counts for a theta in PWM counts).
+    Raises InputError for wrong shapes and numbers that are not finite.
 
     >>> from ir50p_lab.modelling import IR50P, inverse_dynamics
     >>> inverse_dynamics(IR50P, [0, 0, 0], [0, 0, 0], [0, 0, 1]).round(2)
@@ -177,13 +179,13 @@ def _forward(theta, gravity, q, qd, tau, qdd):
 
 
 def forward_dynamics(arm, q, qd, tau, *, g=None):
-    """Accelerations that torques make: solve M qdd = tau - C qd - g - F    (1.74).
+    """Return the accelerations that torques make: solve M qdd = tau - C qd - g - F    (1.74).
 
-    F as in `inverse_dynamics`, with sgn(0) = 0: a joint at rest is not held by dry friction here.
+    F is that of `inverse_dynamics`, with sgn(0) = 0: dry friction does not hold a joint at rest here.
 
-    Args: arm: Arm or theta; q, qd, tau: (3,) or (n, 3), rad, rad/s, N m (PWM counts for a theta in PWM); g: of a
-        theta, m/s^2, default 9.81.
-    Returns: shape of q, rad/s^2.
+    Args: arm: Arm or theta; q, qd, tau: (3,) or (n, 3), rad, rad/s, N m (PWM counts for a theta in PWM counts); g: for
+        a theta only, m/s^2, default 9.81.
+    Returns: the shape of q, rad/s^2.
     Raises: InputError on bad input, or if M is singular at a pose (a link without any inertia).
 
     >>> from ir50p_lab.modelling import IR50P, forward_dynamics, inverse_dynamics
@@ -195,21 +197,23 @@ def forward_dynamics(arm, q, qd, tau, *, g=None):
 
 
 class Energy(namedtuple("Energy", "kinetic potential")):
-    """Kinetic and potential energy, J; arrays of shape () or (n,)."""
+    """Kinetic and potential energy, J; each of shape () or (n,)."""
 
     @property
     def total(self):
-        """Kinetic plus potential, J."""
+        """The sum of kinetic and potential energy, J."""
         return self.kinetic + self.potential
 
 
 def energy(arm, q, qd, *, g=None):
-    """Energy of the moving arm: K = qd' M qd / 2 (rotors included), U with zero at shoulder height    (1.78), (1.111).
+    """Return the energy of the moving arm: kinetic K = qd' M qd / 2 and potential U    (1.78), (1.111).
 
-    U = g (theta_3 sin q2 + theta_4 sin(q2 + q3)); the column's own constant is left out.
+    K includes the rotors. U is zero at shoulder height: U = g (theta_3 sin q2 + theta_4 sin(q2 + q3)), without the
+    column's own constant.
 
-    Args: arm: Arm or theta with equal inertial rows; q, qd: (3,) or (n, 3); g: of a theta, m/s^2, default 9.81.
-    Returns: Energy. Raises InputError for a theta with unequal rows: motors of unequal gain scale each row by
+    Args: arm: Arm, or theta with equal inertial rows; q, qd: (3,) or (n, 3), rad and rad/s; g: for a theta only, m/s^2,
+        default 9.81.
+    Returns: Energy, J. Raises InputError for a theta with unequal rows: motors of unequal gain scale each row by
     another factor, so that no common energy exists.
 
     >>> from ir50p_lab.modelling import IR50P, energy

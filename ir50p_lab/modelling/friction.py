@@ -10,7 +10,7 @@ from ir50p_lab.inputs import vector3, vectors3
 
 @dataclass(frozen=True, kw_only=True)
 class Friction:
-    """Friction of the three joints, seen at the joint.
+    """Friction of the three joints, as seen at the joint.
 
     ===== ============================== ==============
     field meaning                        shape, unit
@@ -48,7 +48,7 @@ class Friction:
 
 
 def friction_torque(friction, qd):
-    """Friction torque at joint velocity `qd`, with the sign in which it stands in (1.74): it opposes motion.
+    """Return the friction torque at joint velocity `qd`, with the sign that it has in (1.74): it opposes motion.
 
     F(qd) = fv qd + sgn(qd) [fc + (fs - fc) exp(-(qd/qs)^2)] + Tf    (1.115)-(1.117), Tf from (1.118)
 
@@ -56,8 +56,8 @@ def friction_torque(friction, qd):
         friction: Friction, or an Arm.
         qd: (3,) or (n, 3), rad/s.
 
-    Returns: torque of the shape of `qd`, N m. At qd = 0 dry friction has no single value (anything up to fs);
-    sgn(0) = 0 is used here, the simulation treats sticking properly.
+    Returns: the shape of `qd`, N m. At qd = 0 dry friction has no single value (it is anything up to fs); here
+    sgn(0) = 0, while the simulation handles sticking properly.
 
     Raises InputError on a wrong shape or a number that is not finite.
     """

@@ -17,14 +17,15 @@ _EDGE = 1e-12  # share of the reach by which rounding may put the tip of a stret
 
 @dataclass(frozen=True)
 class IKSolutions:
-    """All joint angles that reach a point.
+    """All joint angles that reach a point, or each of n points.
 
     q: (4, 3) or (n, 4, 3) rad, one row per branch in the order of `branches`; q_min, q_max: the joint limits, rad.
-    Front: joint 1 faces the point; back: it faces away and the arm bends over backwards. Up and down are the sign of
-    q3: up is q3 <= 0, down is q3 >= 0. For the front branches up puts the elbow above the line from shoulder to tip,
-    down below it; bent over backwards it is the other way round. On the edge of the workspace up and down coincide.
+    In the front branches joint 1 faces the point; in the back ones it faces away, and the arm bends over backwards.
+    Up and down are the sign of q3: q3 <= 0 is up, q3 >= 0 is down. In the front branches the elbow of up is above the
+    line from shoulder to tip, that of down below it; for an arm bent over backwards it is the other way round. At the
+    edge of the workspace up and down coincide.
 
-    Iterating, indexing and len() go over the branches of a single point.
+    For a single point, iterating, indexing and len() go over the branches.
     """
 
     q: np.ndarray
@@ -34,7 +35,7 @@ class IKSolutions:
 
     @cached_property
     def within_limits(self):
-        """Which branches are within the joint limits, (4,) or (n, 4)."""
+        """Which branches are within the joint limits: bool, (4,) or (n, 4)."""
         return ((self.q >= np.array(self.q_min)) & (self.q <= np.array(self.q_max))).all(axis=-1)
 
     def __len__(self):
@@ -50,9 +51,10 @@ class IKSolutions:
 
 
 def reachability(arm, p):
-    """Distance from `p` to the workspace, 0 inside: a thick shell about the shoulder, joint limits not counted.
+    """Return the distance from `p` to the workspace, 0 if `p` is inside.
 
-    The shell is |l2 - l3| <= r <= l2 + l3, r the distance from the shoulder (0, 0, l1).
+    The workspace is the shell |l2 - l3| <= r <= l2 + l3, with r the distance from the shoulder (0, 0, l1). Joint limits
+    are not taken into account.
 
     Args: arm: Arm; p: (3,) or (n, 3) m. Returns: scalar or (n,) m.
     """
@@ -108,7 +110,7 @@ _FOUR = np.empty(4)  # gives the branches their number: the signature of a ufunc
 
 
 def inverse_kinematics(arm, p):
-    """All four joint solutions for a tip position, closed form    (1.60)-(1.73) corrected
+    """Return all four joint solutions for a position of the tip, in closed form    (1.60)-(1.73) corrected
 
     q1 = atan2(y, x) or atan2(-y, -x);  Delta = +-hypot(x, y), z1 = z - l1, r^2 = Delta^2 + z1^2
     q3 = -+2 atan2(sqrt((l2 + l3)^2 - r^2), sqrt(r^2 - (l2 - l3)^2))
@@ -116,8 +118,8 @@ def inverse_kinematics(arm, p):
 
     Near the folded arm with equal links the half-angle form of q3 keeps all digits of the tip, where acos (1.69)
     misses it by up to 1e-8 of the reach. Near the stretched arm the two are alike: there the tip hardly depends on
-    q3, so that rounding of p alone leaves q3 uncertain by some 3e-8 rad, and the tip right to the last digits.
-    Joint limits are checked last and only marked.
+    q3, so that the rounding of p alone leaves q3 uncertain by some 3e-8 rad while the tip is right to the last digits.
+    Joint limits are checked last; solutions beyond them are returned, too, and only marked.
 
     Args: arm: Arm; p: (3,) or (n, 3) m.
     Returns: IKSolutions with q of shape (4, 3) or (n, 4, 3), angles in (-pi, pi].

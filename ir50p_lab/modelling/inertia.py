@@ -1,4 +1,4 @@
-"""Inertia tensors of simple solids by integration (1.100)-(1.110 corrected)."""
+"""Inertia tensors of simple solids, by integration (1.100)-(1.110 corrected)."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ import sympy
 
 
 def second_moment_tensor(p):
-    """(p^T p) I3 - p p^T of one point, (3, 3): what (1.101) integrates over the solid (1.103 corrected).
+    """Return (p^T p) I3 - p p^T of one point, (3, 3), which (1.101) integrates over the solid (1.103 corrected).
 
     Args: p: (3,) coordinates, symbols or numbers. Returns: sympy matrix.
     """
@@ -16,9 +16,9 @@ def second_moment_tensor(p):
 
 @dataclass(frozen=True)
 class Solid:
-    """A uniform solid as formulas: centre of mass and inertia tensor about it.
+    """A uniform solid as formulas: its centre of mass, and its inertia tensor about it.
 
-    com (3, 1) m in the solid's own frame, inertia (3, 3) kg m^2 about the centre of mass; its mass is the symbol m.
+    com: (3, 1) m in the solid's own frame; inertia: (3, 3) kg m^2 about the centre of mass. The mass is the symbol m.
     """
 
     com: sympy.Matrix
@@ -26,14 +26,14 @@ class Solid:
 
 
 def integrate_solid(p, limits, *, volume_element=1):
-    """Mass properties of a uniform solid by three nested integrals (1.101), (1.105)-(1.110 corrected).
+    """Return the mass properties of a uniform solid by three nested integrals (1.101), (1.105)-(1.110 corrected).
 
     Args:
         p: (3,) position of a point of the solid, formulas in the three coordinates that are integrated.
-        limits: [(coordinate, from, to), ...], innermost integral first; the other symbols are its sizes.
-        volume_element: dV over the product of the differentials, e.g. r in cylindrical coordinates.
+        limits: [(coordinate, from, to), ...], innermost integral first; the other symbols are the solid's sizes.
+        volume_element: dV divided by the product of the differentials, e.g. r in cylindrical coordinates.
 
-    Returns: Solid, inertia about its centre of mass, mass as the symbol m (density = m / volume).
+    Returns: Solid, with the inertia about its centre of mass and the mass as the symbol m (density = m / volume).
     """
 
     def integral(f):
@@ -52,7 +52,7 @@ def integrate_solid(p, limits, *, volume_element=1):
 
 
 def cylinder():
-    """A solid cylinder of radius R and length L along x."""
+    """Return the Solid of a full cylinder of radius R and length L along x, with R and L as symbols."""
     R, L = sympy.symbols("R L", positive=True)
     x, rho, phi = sympy.symbols("x rho phi", real=True)
     p = (x, rho * sympy.cos(phi), rho * sympy.sin(phi))

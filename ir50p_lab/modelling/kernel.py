@@ -1,4 +1,4 @@
-"""One state or many: functions of one state as NumPy's generalised ufuncs, and the errors they raise."""
+"""One state or many: functions of one state turned into NumPy's generalised ufuncs, and the errors that they raise."""
 
 import re
 import sys
@@ -18,10 +18,11 @@ NOT_FINITE = "the result is not finite: the numbers are too large"
 
 
 def kernel(layout):
-    """Decorator: a function of one state becomes a function that gives it as NumPy's generalised ufunc of floats.
+    """Decorate a function of one state: its name then stands for a function that returns NumPy's generalised ufunc.
 
-    layout: NumPy's, such as "(n),(n)->(n)". The last argument of the function is the result, which it fills. It raises
-    InputError(NOT_FINITE) if that is not finite: a NaN that went in has come out. Compiled when it is first needed.
+    layout: NumPy's signature, such as "(n),(n)->(n)". The last argument of the function is the result, which it fills.
+    It raises InputError(NOT_FINITE) if the result is not finite, because then a NaN has gone in. The ufunc works on
+    floats and is compiled when it is first needed.
     """
 
     def decorate(function):
@@ -63,11 +64,11 @@ def _interpreted(function, layout):
 
 
 def evaluate(kernel, constants, check=None, /, **vectors):
-    """`kernel` of the constants and the vectors, each (3,) or (..., 3): arrays, lists or tuples.
+    """Return `kernel` of the constants and the vectors, each (3,) or (..., 3): arrays, lists or tuples.
 
-    Good input is not looked at here: NumPy refuses what does not fit, the kernel what is not finite. Only then, or if
-    NumPy hands the work to another kind of array, the arguments are checked one by one, for the sentence that names
-    the fault. check() gives the constants, checked.
+    Good input is not inspected here: NumPy refuses what does not fit, and the kernel what is not finite. Only then, or
+    if NumPy hands the work to another kind of array, are the arguments checked one by one, for the message that names
+    the fault. check() returns the constants after checking them.
     """
     try:
         result = kernel()(*constants, *vectors.values())
@@ -80,7 +81,7 @@ def evaluate(kernel, constants, check=None, /, **vectors):
 
 
 def warn_of_degrees(arm, q):
-    """Warn of angles q (..., 3) more than a turn beyond the arm's limits (without limits: beyond four turns).
+    """Warn of angles q (..., 3) that are more than a turn beyond the arm's limits (without limits: beyond four turns).
 
     The warning points at the line outside this package that gave them.
     """
@@ -98,7 +99,7 @@ def warn_of_degrees(arm, q):
 
 
 def same_shape(**vectors):
-    """The vectors as arrays (..., 3), broadcast to one shape. Raises InputError."""
+    """Return the vectors as arrays (..., 3), broadcast to one shape. Raises InputError if their shapes do not fit."""
     arrays = {name: vectors3(name, x, unit="SI") for name, x in vectors.items()}
     try:
         return np.broadcast_arrays(*arrays.values())

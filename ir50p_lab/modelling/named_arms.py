@@ -1,4 +1,4 @@
-"""The arms of the course: the real one (with its assumptions) and the thesis's models."""
+"""The arms of the course: the real one, with its assumptions, and the thesis's models."""
 
 import dataclasses
 
@@ -97,6 +97,9 @@ THESIS_C = read_only(np.tile([*_INERTIAL, *[0.0] * 10], (3, 1)))
 
 
 def load_arm(path=None):
-    """The arm of the course: from `path`, else from the file that $IR50P_ARM names, else the IR50P."""
+    """Return the arm of the course: from the file `path`, else from the file that $IR50P_ARM names, else the IR50P.
+
+    Raises ArmError if the file cannot be read as an arm.
+    """
     path = path or path_setting("IR50P_ARM")
     return Arm.load(path) if path else IR50P

@@ -14,21 +14,26 @@ from ir50p_lab.inputs import numbers
 
 
 def rot_x(angle):
-    """Rotation about x by `angle` (...) rad, (1.4): (...,3,3). Raises InputError for NaN or infinity."""
+    """Return the rotation about x by `angle` (...) rad, shape (..., 3, 3)    (1.4).
+
+    Raises InputError for NaN or infinity.
+    """
     return _elementary("X", angle)
 
 
 def rot_y(angle):
-    """Rotation about y by `angle` (...) rad, (1.5) corrected: (...,3,3). Raises InputError for NaN or infinity.
+    """Return the rotation about y by `angle` (...) rad, shape (..., 3, 3)    (1.5) corrected.
 
     The thesis prints the transposed matrix, which turns the other way: +sin belongs in row 1, column 3,
-    so that a quarter turn takes z to x.
+    so that a quarter turn takes z to x. Raises InputError for NaN or infinity.
     """
     return _elementary("Y", angle)
 
 
 def rot_z(angle):
-    """Rotation about z by `angle` (...) rad, (1.6): (...,3,3). Raises InputError for NaN or infinity.
+    """Return the rotation about z by `angle` (...) rad, shape (..., 3, 3)    (1.6).
+
+    Raises InputError for NaN or infinity.
 
     >>> import numpy as np
     >>> from ir50p_lab.modelling import rot_z

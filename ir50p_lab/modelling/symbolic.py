@@ -57,7 +57,10 @@ class SymbolicModel:
     _b: tuple
 
     def b(self, i, j, k):
-        """Christoffel symbol b_ijk = 1/2 (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i), i, j, k = 1, 2, 3 (1.96)."""
+        """Return the Christoffel symbol b_ijk = 1/2 (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i), i, j, k = 1, 2, 3 (1.96).
+
+        Raises InputError for other indices.
+        """
         if not {i, j, k} <= {1, 2, 3}:
             raise InputError(f"b({i}, {j}, {k}): the indices count the joints, 1 to 3, as in (1.96)")
         return self._b[i - 1][j - 1][k - 1]
@@ -81,10 +84,10 @@ class SymbolicModel:
         return self.M * self.qdd + self.h + self.g
 
     def read(self, name):
-        """The entries of "M", "C", "g", "h" or "tau" as equations to read, without zeros: Formulas.
+        """Return the entries of "M", "C", "g", "h" or "tau" as equations to read, without those that are zero.
 
-        Of M only the upper triangle. In a notebook they appear in the thesis's notation, c_23 = cos(q2 + q3).
-        Raises InputError for another name.
+        Of M only the upper triangle is listed. A notebook shows them in the thesis's notation, c_23 = cos(q2 + q3).
+        Returns: Formulas. Raises InputError for another name.
         """
         choice("name", name, ("M", "C", "g", "h", "tau"))
         matrix = getattr(self, name).xreplace(short_names(self.q))
@@ -98,13 +101,13 @@ class SymbolicModel:
         return Formulas(rows)
 
     def values(self, arm):
-        """Numbers for `symbols`, in their order.
+        """Return the numbers of an arm for `symbols`, in their order, as a list of floats.
 
         Args:
-            arm: an Arm, or a mapping of parameter names to numbers in SI units ("l1", "m2", "Izz3", "g", ...;
-                inertias and rotor inertias j1, j2, j3 may be left out and are 0 then).
+            arm: an Arm, or a mapping of parameter names to numbers in SI units ("l1", "m2", "Izz3", "g", ...).
+                Inertias and the rotor inertias j1, j2, j3, may be left out; they are 0 then.
 
-        Raises InputError for an unknown or missing name, a number that is not finite, or an Arm where `links`
+        Raises InputError for an unknown or missing name, for a number that is not finite, and for an Arm if `links`
         is "thesis" (its constant inertias belong to no rigid body: give a mapping).
         """
         if isinstance(arm, Mapping):
@@ -133,18 +136,18 @@ def derive(*, links="in-line", general=False):
     """Derive the arm's equations of motion as formulas, from the DH table to M, C, g (1.29)-(1.114, corrected).
 
     Args:
-        links: which mass distribution.
-            "in-line" (default): what `Arm` describes; centre of mass lc_i on the link axis, moments Ixx, Iyy, Izz
+        links: which mass distribution the links have.
+            "in-line" (default) is what `Arm` describes: centre of mass lc_i on the link axis, moments Ixx, Iyy, Izz
             about it in the link frame (link 1: z along the column; links 2 and 3: x along the link, z = joint axis).
             "general": centre of mass (x_i, y_i, z_i) anywhere in the link frame, from the joint, and six components
             of inertia per link, I = [[Ixx, -Ixy, -Ixz], [-Ixy, Iyy, -Iyz], [-Ixz, -Iyz, Izz]] (1.104 corrected).
             "thesis": the thesis's model with its algebra put right: inertias that stay constant in the frame that
             turns with joint 1 only, and m1 lc1^2 in M11. No rigid body has them; kept to reproduce its numbers.
-        general: the same as links="general".
+        general: True means the same as links="general".
 
-    Returns: SymbolicModel. Takes about 0.1 s.
+    Returns: SymbolicModel. This takes about 0.1 s.
 
-    Raises InputError for another word.
+    Raises InputError for any other word.
     """
     links = "general" if general else choice("links", links, _COM_AND_INERTIA)
     q, qd, qdd = (sympy.ImmutableMatrix(sympy.symbols(f"{name}1:4", real=True)) for name in ("q", "qdot", "qddot"))
@@ -187,9 +190,9 @@ def derive(*, links="in-line", general=False):
 
 
 def same_function(a, b):
-    """True if two formulas are the same function of the angles, proved exactly (not by trying numbers).
+    """Return True if two formulas are the same function of the angles, proved exactly, not by trying numbers.
 
-    Written with exponentials and expanded, such a function has one form only.
+    Written with exponentials and expanded, such a function has only one form.
 
     Args:
         a, b: sympy expressions, or matrices of one shape, polynomial in sines and cosines of sums of symbols.

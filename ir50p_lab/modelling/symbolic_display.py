@@ -1,4 +1,4 @@
-"""Formulas made readable: c_23 for cos(q2 + q3), one equation a line, masses before lengths before sines."""
+"""Formulas that are easy to read: c_23 for cos(q2 + q3), one equation per line, masses before lengths before sines."""
 
 import re
 
@@ -9,14 +9,14 @@ _LINE = 105  # visible characters that fit on a line of a notebook, roughly
 
 
 def short_names(q):
-    """{cos(q2 + q3): c_{23}, ...} for the angles q1, q2, q3 and q2 + q3."""
+    """Return {cos(q2 + q3): c_{23}, ...}, the short symbols for sine and cosine of q1, q2, q3 and q2 + q3."""
     angles = {"1": q[0], "2": q[1], "3": q[2], "23": q[1] + q[2]}
     functions = ((sympy.cos, "c"), (sympy.sin, "s"))
     return {f(angle): sympy.Symbol(f"{letter}_{{{name}}}") for name, angle in angles.items() for f, letter in functions}
 
 
 class Formulas:
-    """Named formulas, shown by a notebook as aligned equations; `rows` is a tuple of (name in LaTeX, expression)."""
+    """Named formulas, which a notebook shows as aligned equations; `rows` is a tuple of (name in LaTeX, expression)."""
 
     def __init__(self, rows):
         self.rows = tuple(rows)

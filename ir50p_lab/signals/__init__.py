@@ -1,8 +1,9 @@
 """Reference signals, and filters for measured ones.
 
 A reference says where the joints have to be, how fast they move there, and with what acceleration.
-Every reference `target` is frozen and answers `target(t)` -> (q, qd, qdd) and `target.sample(t)` -> (n, 3, 3).
-Names are loaded on first use: importing this package costs nothing.
+Every reference `target` is frozen and has two calls: `target(t)` returns (q, qd, qdd), three arrays (3,), and
+`target.sample(t)` returns the same at many times as (n, 3, 3).
+Names are loaded on first use, so importing this package costs nothing.
 """
 
 from ir50p_lab import lazy

@@ -16,10 +16,10 @@ _AT_REST = 1e-9  # of the sum of |k a_k|: rounding of coefficients that were mad
 
 @dataclass(frozen=True)
 class Fourier(Reference):
-    """Fourier series; made by `fourier`.
+    """A Fourier series as a reference; `fourier` makes it.
 
     a, b: three rows of N coefficients, rad; q0: (3,) rad, the mean pose; period: s; duration: s, end of the motion.
-    Before and after it rests in `q_start`.
+    Before and after the motion it rests in `q_start`.
     """
 
     a: tuple
@@ -37,7 +37,7 @@ class Fourier(Reference):
 
     @property
     def q_start(self):
-        """Pose in which the motion begins and ends, q0 - sum b_k, (3,) rad: move there first, with `quintic`."""
+        """The pose in which the motion begins and ends, q0 - sum b_k, (3,) rad; move there first, with `quintic`."""
         return np.array(self.q0) - np.array(self.b).sum(axis=1)
 
 
@@ -54,27 +54,28 @@ def fourier(
     table=0.0,
     margin=0.03,
 ):
-    """Periodic motion of the three joints, from rest to rest    (4.2 corrected)
+    """Return a periodic motion of the three joints, from rest to rest    (4.2 corrected)
 
         q_i = q_i0 + sum_k=1..N [a_ik sin(k w t) - b_ik cos(k w t)],    w = 2 pi/period
 
-    The thesis begins at k = 0, which adds a constant to q_i0, and has one a and one b for all. At t = 0 and after whole
-    periods the velocity is w sum k a_ik and the acceleration w^2 sum k^2 b_ik: both sums must be 0, or the arm gets a
-    jerk at the start and at the end. The record must hold whole periods: else averages over it are not those of the
-    motion, and the frequencies leak into each other.
+    The thesis begins at k = 0, which adds a constant to q_i0, and has one a and one b for all joints. At t = 0 and
+    after whole periods the velocity is w sum k a_ik and the acceleration w^2 sum k^2 b_ik. Both sums must be 0, or the
+    arm gets a jerk at the start and at the end. The record must hold whole periods; otherwise averages over it are not
+    those of the motion, and the frequencies leak into each other.
 
     Args:
-        a, b: (3, N) rad, one row per joint. period: s. q0: rad, mean pose, one number or (3,).
-        periods: whole number >= 1: the length of the motion.
-        ends: "check" refuses sums that are not 0; "adjust" takes the nearest coefficients whose sums are 0 (least
-            change of all a and b); it needs N >= 2.
-        arm: Arm; if given, the motion is checked against its joint limits less `margin` (rad), the speed
-            `max_joint_speed` (rad/s, one number or (3,); default: half the no-load speed of the motors, without motors
-            2) and the `table` (height in m below which neither elbow nor tip may go; None: no table).
+        a, b: (3, N) rad, one row per joint. period: s. q0: mean pose, rad, one number or (3,).
+        periods: length of the motion in periods, a whole number >= 1.
+        ends: "check" refuses sums that are not 0; "adjust" takes the nearest coefficients whose sums are 0 (with the
+            least change of all a and b) and needs N >= 2.
+        arm: Arm; if given, the motion is checked against its joint limits, from which it keeps `margin` (rad), against
+            the speed `max_joint_speed` (rad/s, one number or (3,); default: half the no-load speed of the motors, or
+            2 rad/s without motors), and against the `table` (the height in m below which neither elbow nor tip may go;
+            None: no table).
 
     Returns: Fourier, a Reference with `.q_start`.
     Raises: UnreachableError if a limit of the arm is passed (it says which, when and by how much); InputError on wrong
-    shapes, numbers that are not finite, ends that are not at rest.
+    shapes, numbers that are not finite, and ends that are not at rest.
     """
     a, b = _coefficients(a, b)
     period, periods = number("period", period, "> 0", unit="s"), whole("periods", periods, 1, 10**6)
@@ -90,7 +91,10 @@ def fourier(
 
 
 def series(a, b, q0, period, t):
-    """The bare series and its derivatives at times t (n,) s, also outside the motion: (n, 3, 3) as Reference.sample."""
+    """Return the bare series and its derivatives at the times t (n,) s, also outside the motion.
+
+    Returns: (n, 3, 3), as Reference.sample.
+    """
     a, b = np.array(a), np.array(b)
     w = 2 * np.pi / period * np.arange(1, a.shape[1] + 1)
     angle = (t % period)[:, None] * w
@@ -103,9 +107,9 @@ def series(a, b, q0, period, t):
 
 
 def at_rest(a, b):
-    """The nearest coefficients with sum k a_k = 0 and sum k^2 b_k = 0, so that the motion ends at rest: (a, b).
+    """Return the nearest coefficients (a, b) with which the motion ends at rest: sum k a_k = 0 and sum k^2 b_k = 0.
 
-    Args: a, b: (3, N) rad, N >= 2 (one harmonic alone cannot rest). Raises InputError.
+    Args: a, b: (3, N) rad, N >= 2 (one harmonic alone cannot rest). Raises InputError for other shapes.
     """
     a, b = _coefficients(a, b)
     if a.shape[1] < 2:
@@ -115,10 +119,11 @@ def at_rest(a, b):
 
 
 def check_limits(target, arm, *, max_joint_speed=None, table=0.0, margin=0.03):
-    """Refuse a Fourier motion that leaves the limits of the arm; args and errors as in `fourier`.
+    """Refuse a Fourier motion that leaves the limits of the arm; arguments and errors are those of `fourier`.
 
-    Looked at on 256 points per period of the fastest harmonic. A trigonometric polynomial of degree N can exceed its
-    largest value on such a grid by no more than 1/cos(pi/256) - 1 of half its range (Bernstein): that is added.
+    The motion is inspected at 256 points per period of its fastest harmonic. A trigonometric polynomial of degree N can
+    exceed its largest value on such a grid by no more than 1/cos(pi/256) - 1 of half its range (Bernstein); that much
+    is added.
     """
     lengths(arm)  # refuses what is not an Arm
     low, high, speed, table = limits_of(arm, max_joint_speed=max_joint_speed, table=table, margin=margin)
@@ -143,9 +148,9 @@ def check_limits(target, arm, *, max_joint_speed=None, table=0.0, margin=0.03):
 
 
 def refuse_below_table(l, q, table, place):
-    """Raise UnreachableError if elbow or tip would be under the table; place(i) says where sample i is.
+    """Raise UnreachableError if elbow or tip would be under the table; place(i) returns where sample i is, in words.
 
-    l: (3,) m; q: (n, 3) rad; table: its height in m, None: no table.
+    l: (3,) m; q: (n, 3) rad; table: its height in m, or None for no table.
     """
     for part, height in zip(("elbow", "tip"), heights(l, q), strict=True):
         i = int(height.argmin())
@@ -157,13 +162,16 @@ def refuse_below_table(l, q, table, place):
 
 
 def heights(l, q):
-    """Heights of elbow and tip over the base, (n,) m each; l: (3,) m; q: (n, 3) rad."""
+    """Return the heights of elbow and tip above the base, (n,) m each. l: (3,) m; q: (n, 3) rad."""
     elbow = l[0] + l[1] * np.sin(q[:, 1])
     return elbow, elbow + l[2] * np.sin(q[:, 1] + q[:, 2])
 
 
 def limits_of(arm, *, max_joint_speed=None, table=0.0, margin=0.03):
-    """The bounds `fourier` checks: (q low (3,), q high (3,) rad, speed (3,) rad/s, table m or None). InputError."""
+    """Return the bounds that `fourier` checks: lowest and highest q (3,) rad, speed (3,) rad/s, table in m or None.
+
+    The joint limits come narrowed by `margin`, rad. Raises InputError for arguments that are no such numbers.
+    """
     number("margin", margin, ">= 0", unit="rad")
     if table is not None:
         number("table", table, unit="m", hint="its height, or None for no table")

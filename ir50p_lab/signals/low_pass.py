@@ -1,4 +1,4 @@
-"""Low-pass filters for sampled signals: for a record at once (4.1.3 corrected)."""
+"""Low-pass filters for sampled signals, applied to a whole record at once (4.1.3 corrected)."""
 
 import math
 
@@ -9,10 +9,11 @@ from ir50p_lab.inputs import choice, first_not_finite, number, numbers, whole
 
 
 def low_pass(x, cutoff_hz, rate_hz, *, order=1, kind="causal"):
-    """Butterworth low pass of a record; gain 1/sqrt(2) at the cut-off (Figure 4.3; zero-phase: 1/2).
+    """Filter a record with a Butterworth low pass; its gain at the cut-off is 1/sqrt(2) (Figure 4.3; zero-phase: 1/2).
 
-    kind="causal" uses the past only, as a loop must: it starts settled on the first sample; its lag is 1/(2 pi cutoff).
-    kind="zero-phase" runs forward and backward over the finished record: no lag, double the order, not for a loop.
+    kind="causal" uses only the past, as a loop must. It starts settled on the first sample and lags by 1/(2 pi cutoff).
+    kind="zero-phase" runs forward and backward over the finished record: no lag and double the order, but no loop can
+    use it.
 
     Args: x: (n,) or (n, k), time first; cutoff_hz: Hz, below rate_hz/2; rate_hz: samples per s; order: 1..8.
     Returns: array like x. Raises InputError for a cut-off at or above half the rate (the thesis's 300 Hz at 100 Hz),
@@ -35,7 +36,10 @@ def low_pass(x, cutoff_hz, rate_hz, *, order=1, kind="causal"):
 
 
 def alias(f_hz, rate_hz):
-    """Frequency that `f_hz` is taken for when sampled at `rate_hz`: 0..rate/2, Hz. 300 Hz at 100 Hz looks like 0."""
+    """Return the frequency for which `f_hz` is taken when it is sampled at `rate_hz`, 0 to rate_hz/2, Hz.
+
+    f_hz: Hz, a number or an array. 300 Hz sampled at 100 Hz looks like 0 Hz.
+    """
     rate_hz = number("rate_hz", rate_hz, "> 0", hint="samples per second")
     f = np.asarray(f_hz, dtype=float)
     return np.abs(f - rate_hz * np.rint(f / rate_hz))

@@ -13,7 +13,7 @@ _TIME = "a motion takes time (for a sudden change use steps)"
 
 @dataclass(frozen=True)
 class Quintic(Reference):
-    """Quintic pieces between poses; made by `quintic` and `through`.
+    """A chain of quintic pieces between poses; `quintic` and `through` make it.
 
     times: m increasing numbers, s; points: m poses, rad. The joints rest at points[i] at times[i].
     """
@@ -42,8 +42,8 @@ def quintic(q0, q1, *, duration):
 
     q = q0 + (q1 - q0)(10 s^3 - 15 s^4 + 6 s^5),  s = t/duration
 
-    The largest velocity is 15/8 |q1 - q0|/duration, halfway; the largest acceleration
-    10/sqrt(3) |q1 - q0|/duration^2. Before t = 0 it rests at q0, after the end at q1.
+    The largest velocity is 15/8 |q1 - q0|/duration, halfway; the largest acceleration is
+    10/sqrt(3) |q1 - q0|/duration^2. Before t = 0 the joints rest at q0, after the end at q1.
 
     Args: q0, q1: (3,) rad (may be equal); duration: s, > 0.
     Returns: Reference. Raises InputError on a wrong shape, a number that is not finite

@@ -17,9 +17,9 @@ class Reference:
     target.duration      s from t = 0 until the motion is over (0 for `hold`, inf for `sinusoid`); q stays after it
     ==================== =====================================================================================
 
-    qd is the derivative of q, and qdd that of qd, everywhere but at the jumps a class names. Times are seconds, any
-    finite number; before its start a reference rests in its first pose. References are frozen and compare by value.
-    A new kind derives from this class, sets `duration` and writes `_rows(t)`: times (n,) -> array (n, 3, 3).
+    qd is the derivative of q, and qdd that of qd, everywhere except at the jumps that a class names. A time is any
+    finite number of seconds; before its start a reference rests in its first pose. References are frozen and compare
+    by value. A new kind derives from this class, sets `duration` and writes `_rows(t)`: times (n,) -> array (n, 3, 3).
     """
 
     duration = 0.0
@@ -32,7 +32,7 @@ class Reference:
         return q, qd, qdd
 
     def sample(self, t):
-        """Evaluate at many times.
+        """Return the reference at many times.
 
         Args: t: (n,) s, in any order. Returns: (n, 3, 3), indices time, (q, qd, qdd), joint; rad, rad/s, rad/s^2.
         Raises InputError if t is not of shape (n,) or a time is not finite.
@@ -41,7 +41,7 @@ class Reference:
 
 
 def time_vector(name, value):
-    """Return `value` as a float array (n,) in s; InputError on another shape or a number that is not finite."""
+    """Return `value` as a float array (n,) in s. Raises InputError for another shape or a number that is not finite."""
     t = numbers(name, value, unit="s")
     if t.ndim != 1:
         raise InputError(f"{name} has shape {t.shape}; give times in s of shape (n,)")
@@ -51,12 +51,15 @@ def time_vector(name, value):
 
 
 def pose(name, value, *, unit="rad"):
-    """Return `value` as a tuple of three floats; InputError on another shape or a number that is not finite."""
+    """Return `value` as a tuple of three floats. Raises InputError for another shape or a number that is not finite."""
     return tuple(vector3(name, value, unit=unit).tolist())
 
 
 def per_joint(name, value, rule="finite", *, unit=""):
-    """Three numbers that keep the `rule` of `number`, one per joint, as a tuple; a single one counts for all joints."""
+    """Return three numbers, one per joint, as a tuple; a single number counts for all joints.
+
+    Raises InputError for another shape, or for a number that breaks the `rule` of `number`.
+    """
     if isinstance(value, (str, bytes, bool)):
         number(name, value, rule, unit=unit)  # says that these are none
     array = numbers(name, value, unit=unit)

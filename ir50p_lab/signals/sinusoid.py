@@ -10,7 +10,7 @@ from ir50p_lab.signals.reference import Reference, per_joint
 
 @dataclass(frozen=True)
 class Sinusoid(Reference):
-    """Harmonic reference without end; made by `sinusoid`. All fields (3,): rad, rad/s, rad, rad."""
+    """A harmonic reference without end; `sinusoid` makes it. All its fields are (3,): rad, rad/s, rad, rad."""
 
     amplitude: tuple
     omega: tuple
@@ -31,8 +31,8 @@ class Sinusoid(Reference):
 def sinusoid(amplitude, omega, *, offset=0.0, phase=0.0):
     """Swing for ever: q = offset + amplitude sin(omega t + phase), each joint with its own numbers.
 
-    It is moving already at t = 0 and before (velocity amplitude omega cos(phase)): an arm at rest cannot follow the
-    first instant. With phase = pi/2 it begins at rest, at the end of the swing.
+    The joints move already at t = 0 and before (with velocity amplitude omega cos(phase)), so an arm at rest cannot
+    follow the first instant. With phase = pi/2 the motion begins at rest, at the end of the swing.
 
     Args: amplitude: rad; omega: rad/s; offset: rad; phase: rad; each one number for all joints, or (3,).
     Returns: Reference with duration inf. Raises InputError on a wrong shape or a number that is not finite.

@@ -11,9 +11,9 @@ from ir50p_lab.signals.reference import Reference, pose, time_vector
 
 @dataclass(frozen=True)
 class Steps(Reference):
-    """Piecewise constant reference; made by `hold` and `steps`.
+    """A piecewise constant reference; `hold` and `steps` make it.
 
-    times: m increasing numbers, s; values: m poses, rad. values[i] holds from times[i] on.
+    times: m increasing numbers, s; values: m poses, rad. values[i] begins at times[i] and holds until the next.
     """
 
     times: tuple
@@ -44,8 +44,8 @@ def hold(q):
 def steps(times, values):
     """Jump from pose to pose: values[i] holds from times[i] (included) until times[i + 1].
 
-    At a jump q changes at once and qd = qdd = 0 there as everywhere: the impulse that the derivative of a step would
-    be is left out, because no controller can use it. Fit for step responses, not for moving an arm gently.
+    At a jump q changes at once, and qd = qdd = 0 there as everywhere: the impulse that would be the derivative of a
+    step is left out, because no controller can use it. Steps are good for step responses, not for moving an arm gently.
 
     Args:
         times: (m,) s, increasing, the first 0 (or earlier).

@@ -1,4 +1,4 @@
-"""The quickest motion within limits of velocity and acceleration: trapezoids of velocity."""
+"""The quickest motion within limits of velocity and acceleration: velocities in the shape of a trapezoid."""
 
 import math
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ _NO_DISTANCE = 1e-100  # rad: below it a joint stays, so that limit/distance can
 
 @dataclass(frozen=True)
 class Trapezoid(Reference):
-    """Trapezoidal velocity; made by `trapezoid`.
+    """A reference with a trapezoidal velocity; `trapezoid` makes it.
 
-    q0, q1: (3,) rad. In terms of the share of the path: acceleration a 1/s^2, peak velocity v 1/s.
+    q0, q1: (3,) rad. As shares of the path: acceleration a, 1/s^2, and peak velocity v, 1/s.
     """
 
     q0: tuple
@@ -39,12 +39,12 @@ class Trapezoid(Reference):
 def trapezoid(q0, q1, *, v_max, a_max):
     """Move from rest at `q0` to rest at `q1`: full acceleration, full speed, full braking.
 
-    A joint with path D alone needs D/v_max + v_max/a_max, or 2 sqrt(D/a_max) if D < v_max^2/a_max: then it never
-    reaches v_max and its velocity is a triangle. The acceleration jumps (at a jump the value after it counts).
+    A joint alone with a path D needs D/v_max + v_max/a_max, or 2 sqrt(D/a_max) if D < v_max^2/a_max: then it never
+    reaches v_max, and its velocity is a triangle. The acceleration jumps (at a jump the value after it counts).
 
     All joints share one profile s(t) of the path, q = q0 + (q1 - q0) s(t): they start, change over and arrive together,
-    and the pose moves on a straight line in joint space. It is the quickest such profile that keeps every limit; where
-    one joint is limited by velocity and another by acceleration, it takes longer than the slower of the two alone.
+    and the pose moves on a straight line in joint space. It is the quickest such profile that keeps every limit. If one
+    joint is limited by velocity and another by acceleration, it takes longer than the slower of the two would alone.
 
     Args:
         q0, q1: (3,) rad (may be equal).

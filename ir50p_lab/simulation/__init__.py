@@ -1,4 +1,4 @@
-"""The arm as a plant, closed loops in simulated time, sweeps over gains. Everything here is simulated.
+"""The arm as a plant, closed loops in simulated time, and sweeps over gains. Everything here is simulated.
 
 Names are loaded on first use.
 """

@@ -1,4 +1,4 @@
-"""A first-order lag with dead time, exact for an input that changes in jumps."""
+"""A first-order lag with dead time, solved exactly for an input that changes in jumps."""
 
 import numpy as np
 
@@ -9,10 +9,11 @@ _SMALL = 1e-4  # below this a dt, series keep the digits that (1 - exp(-a dt))/a
 
 @jit()
 def respond(t, jump_times, jumps, a, L, out):
-    """x' = v(t - L) - a x from x = 0, exactly, with dead time L of any size (no multiple of a period).
+    """Solve x' = v(t - L) - a x exactly from x = 0, for a dead time L of any size (it need be no multiple of a period).
 
-    v is the sum of the jumps that have happened. a = 0 integrates, a < 0 grows, a complex one swings. Writes x at the
-    times t (n,), increasing, into out (n,), of the type of a; jump_times (m,), increasing, none before t[0].
+    v is the sum of the jumps so far. With a = 0 the lag integrates, with a < 0 it grows, with a complex a it swings.
+    Fills out (n,), of the type of a, with x at the increasing times t (n,); jump_times (m,) also increase, and none is
+    before t[0].
     """
     x, v, now, k = 0.0 * a, 0.0, t[0], 0
     for i in range(len(t)):

@@ -1,4 +1,4 @@
-"""One step of simulated time: Runge-Kutta where motion is smooth, a step that can stick where friction is dry.
+"""One step of simulated time: Runge-Kutta for smooth motion, and a step that can stick for dry friction.
 
 theta (3, 20) and n (33,) are the two arrays of a `Plant`.
 """
@@ -12,7 +12,7 @@ from ir50p_lab.simulation.plant import DRY, FC, FORCE_SCALE, FS, FV, GRAVITY, LE
 
 @jit(forceinline=True)
 def acceleration(theta, n, q2, q3, a, b, c, u1, u2, u3):
-    """Accelerations without dry friction: M^-1 (u - C qd - g - fv qd - Tf)."""
+    """Return the accelerations without dry friction: M^-1 (u - C qd - g - fv qd - Tf)."""
     s2, c2 = cf.sincos(q2)
     s3, c3 = cf.sincos(q3)
     c23, s23 = c2 * c3 - s2 * s3, s2 * c3 + c2 * s3
@@ -27,7 +27,7 @@ def acceleration(theta, n, q2, q3, a, b, c, u1, u2, u3):
 
 @jit(forceinline=True)
 def rk4_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h):
-    """Classical Runge-Kutta over h seconds with the command held: returns q and qd, six scalars."""
+    """Take one classical Runge-Kutta step of h seconds with the command held; return q and qd, six scalars."""
     a1, b1, c1 = acceleration(theta, n, q2, q3, a, b, c, u1, u2, u3)
     k = 0.5 * h
     va, vb, vc = a + k * a1, b + k * b1, c + k * c1
@@ -59,10 +59,10 @@ def _slide(x, dry, A, lowest, highest):
 
 @jit()
 def dry_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h):
-    """A step that can stick: Moreau's time stepping, velocities and impulses solved together (Gauss-Seidel).
+    """Take a step that can stick: Moreau's time stepping, which solves velocities and impulses together (Gauss-Seidel).
 
-    (M + h fv) v+ = M v + h (u - C v - g - Tf) + impulses, with each dry-friction impulse within h F(v), each end
-    stop and the table only pushing back. First order in h; a joint driven below breakaway does not move at all.
+    (M + h fv) v+ = M v + h (u - C v - g - Tf) + impulses. Each dry-friction impulse is at most h F(v), and the end
+    stops and the table can only repel. First order in h; a joint driven below breakaway does not move at all.
     """
     s2, c2 = cf.sincos(q2)
     s3, c3 = cf.sincos(q3)
@@ -104,7 +104,7 @@ def dry_step(theta, n, q1, q2, q3, a, b, c, u1, u2, u3, h):
 @on_floats
 @jit()
 def advance(theta, n, x, u, h, steps):
-    """Advance the state x = (q, qd) (6,) by `steps` steps of h seconds with u (3,) held, which the drive can give."""
+    """Advance the state x = (q, qd) (6,) by `steps` steps of h seconds with u (3,) held, within the drive's limits."""
     q1, q2, q3, a, b, c = x[0], x[1], x[2], x[3], x[4], x[5]
     u1, u2, u3 = u
     if n[DRY] > 0.0:

@@ -1,4 +1,4 @@
-"""Closed loops, compiled as a whole: sampled controllers (zero-order hold) and the continuous PID."""
+"""Closed loops, each compiled as a whole: sampled controllers (zero-order hold) and the continuous PID."""
 
 import numpy as np
 
@@ -10,10 +10,10 @@ from ir50p_lab.simulation.plant import LIMIT
 
 @jit(nogil=True)
 def sampled_loop(theta, n, p, s, t, r, x, late, h, steps, q, qd, u):
-    """The loop of a computer: measure, compute, hold for `steps` steps of h; fills q, qd, u (n, 3).
+    """Run the loop of a computer: measure, compute, hold for `steps` steps of h seconds. Fills q, qd, u (n, 3).
 
-    theta, n: the plant; p, s: the controller; t (n,) s; r (n, 3, 3) reference; x (6,) state, changed. Each
-    command acts `late` periods after its sample, and nothing before the first.
+    theta, n: the plant; p, s: the controller; t: (n,) s; r: reference (n, 3, 3); x: state (6,), which is changed. Each
+    command acts `late` periods after its sample; before the first command acts, the command is zero.
     """
     measured, command, acting = np.empty(3), np.empty(3), np.zeros(3)
     for k in range(t.size):
@@ -43,7 +43,11 @@ def _continuous_rate(theta, n, p, r, x, rate, u):
 
 @jit()
 def continuous_loop(theta, n, p, r, x, h, steps, q, qd, u):
-    """The continuous PID by Runge-Kutta: r (2 steps (n-1) + 1, 3, 3) is the reference at every half step."""
+    """Run the continuous PID by Runge-Kutta; r (2 steps (n-1) + 1, 3, 3) is the reference at every half step.
+
+    theta, n: the plant; p: the controller's parameters (12,); x: (q, qd, int e) (9,), which is changed; h: step, s.
+    Fills q, qd, u (n, 3).
+    """
     k1, k2, k3, k4 = np.empty(9), np.empty(9), np.empty(9), np.empty(9)
     command = np.empty(3)
     place = 0

@@ -18,10 +18,11 @@ FV, FC, FS, QS, TF, LIMIT, Q_MIN, Q_MAX, LENGTHS, FORCE_SCALE = 3, 6, 9, 12, 15,
 
 @dataclass(frozen=True)
 class Plant:
-    """The arm as two flat arrays (structures of many arrays cost the compiled loops a factor of ten).
+    """The arm as two flat arrays (structures of many arrays make the compiled loops ten times as slow).
 
-    theta: (3, 20), its inertial part counts; numbers: (33,), places above, in units of the command u (N m or PWM):
-    friction, limit of |u|, end stops in rad (infinite: none), lengths in m, FORCE_SCALE 1 for N m and 1/K for PWM.
+    theta: (3, 20), of which the inertial part counts; numbers: (33,), with the places given above, in units of the
+    command u (N m or PWM): friction, limit of |u|, end stops in rad (infinite: none), lengths in m, and FORCE_SCALE,
+    which is 1 for N m and 1/K for PWM.
     """
 
     theta: np.ndarray
@@ -29,27 +30,28 @@ class Plant:
 
     @property
     def limit(self):
-        """Limit of |u|, (3,)."""
+        """Limit of |u|, (3,), in the unit of the command."""
         return self.numbers[LIMIT : LIMIT + 3]
 
     @property
     def dry(self):
-        """Whether motion can stick or hit something."""
+        """Whether the motion can stick or hit something."""
         return bool(self.numbers[DRY])
 
 
 def make_plant(arm, *, unit="N m", stops=False, table=None, g=None):
-    """The plant of an Arm or a theta.
+    """Return the Plant of an Arm or a theta.
 
     Args:
-        arm: Arm, or theta (3, 20) (its Coulomb friction then also is the breakaway: theta holds no Stribeck part).
+        arm: Arm, or theta (3, 20), whose Coulomb friction is also its breakaway: theta holds no Stribeck part.
         unit: unit of the command. 'PWM' drives an Arm through its actuators: gain, back-EMF, saturation.
         stops: whether the joint limits are end stops (without rebound).
-        table: height of a table that the tip cannot pass, m; None: no table. The contact is that of the tip alone
-            (an elbow passes through) and without friction.
+        table: height of a table that the tip cannot pass, m; None: no table. Only the tip touches it (an elbow
+            passes through), and there is no friction in the contact.
         g: gravity for a theta, m/s^2, default 9.81 (a theta holds none; an Arm carries its own and refuses this).
 
-    Raises: ArmError (no actuators for PWM), InputError (a table or end stops for a theta, g for an Arm, unknown unit).
+    Raises: ArmError (no actuators for PWM, or a theta with negative friction), InputError (a table or end stops for a
+    theta, g for an Arm, unknown unit).
     """
     choice("unit", unit, ("N m", "PWM"))
     theta, gravity = as_theta(arm, g)

@@ -32,26 +32,27 @@ def simulate(
 ):
     """Simulate `arm` under `controller` for `duration` seconds.
 
-    Inside, fixed steps: Runge-Kutta (order 4) for motion without dry friction, and a step that can stick (Moreau) with
-    dry friction, end stops or a table. Outside, the controller sees q every `period` and its command is held in
-    between (zero-order hold). A continuous controller (`ContinuousPID`) acts inside the step instead.
+    Time goes in fixed steps: Runge-Kutta (order 4) for motion without dry friction, and a step that can stick (Moreau)
+    with dry friction, end stops or a table. The controller sees q every `period`, and its command is held in
+    between (zero-order hold). A continuous controller (`ContinuousPID`) acts inside each step instead.
 
     Args:
         arm: Arm or theta (3, 20).
         controller: any object with `step(t, measured, reference) -> u`; its `reset()` is called first if it has one.
-            A compiled one (`PID`) runs compiled throughout; or `ContinuousPID`; or None: no drive, u = 0.
+            A compiled one (`PID`) runs compiled throughout. Or a `ContinuousPID`; or None: no drive, u = 0.
         reference: `target(t) -> (q, qd, qdd)` as in `signals` (its `sample` is used if it has one), an array
             (3,) of angles to hold, or None: hold q0.
         duration, period, step: s; period must be a whole number of steps, duration is rounded to whole periods.
-        q0, qd0: (3,) start, rad and rad/s.
+        q0, qd0: (3,) angles and velocities at the start, rad and rad/s.
         unit: unit of the command, 'N m' or 'PWM'; default: the controller's own, else 'N m'.
-        stops, table: end stops at the arm's joint limits; height of a table for the tip, m (see `make_plant`).
+        stops: whether there are end stops at the arm's joint limits; table: height of a table for the tip, m, or None
+            (see `make_plant`).
         g: gravity for a theta, m/s^2, default 9.81; an Arm carries its own and refuses this.
 
     Returns: SimulationResult, sampled every `period`.
     Raises: InputError on bad input, or if the run leaves all bounds (an unstable loop: it says when).
     Warns: UnstableLoopWarning if the run stays finite but looks unstable (`looks_unstable` says how it looks; the
-    result keeps the sentence as `unstable`). Without a controller nothing is looked for.
+    result keeps the sentence as `unstable`). A run without a controller is not judged.
 
     >>> from ir50p_lab.controllers import PID
     >>> from ir50p_lab.modelling import IR50P
@@ -141,7 +142,7 @@ def _target(reference, q0):
 
 
 def sampled(target, t):
-    """A reference, or any function t -> (q, qd, qdd), at the times t (n,): (n, 3, 3). Raises InputError."""
+    """Return a reference, or any function t -> (q, qd, qdd), at the times t (n,) as (n, 3, 3). Raises InputError."""
     if hasattr(target, "sample"):
         r = target.sample(t)
     else:

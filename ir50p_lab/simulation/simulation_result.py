@@ -11,11 +11,11 @@ from ir50p_lab.modelling.dynamics import energy
 
 @dataclass(frozen=True)
 class SimulationResult:
-    """A simulated run, time first. Simulated: no number here was measured.
+    """A simulated run, time first. No number here was measured.
 
-    t (n,) s; q, qd (n, 3) rad, rad/s; u (n, 3) applied command in `unit`, held from each sample to the next;
-    reference (n, 3, 3): q, qd, qdd of the reference. energy: kinetic and potential energy (n,) J, where the arm has
-    one (a theta with unequal rows has none). g: gravity given for a theta, m/s^2 (None: 9.81, or the Arm's own).
+    t: (n,) s; q, qd: (n, 3) rad, rad/s; u: (n, 3), applied command in `unit`, held from each sample to the next;
+    reference: (n, 3, 3), q, qd, qdd of the reference. energy: kinetic and potential energy, (n,) J, if the arm has
+    one (a theta with unequal rows has none). g: the gravity given for a theta, m/s^2 (None: 9.81, or the Arm's own).
     unstable: what looked unstable in the run, "" if nothing did.
     """
 
@@ -32,15 +32,15 @@ class SimulationResult:
 
     @cached_property
     def energy(self):
-        """Energy of the run, (n,) J each; raises InputError for a theta with a row of its own per joint."""
+        """Energy of the run, (n,) J each. Raises InputError for a theta whose joints have unequal rows."""
         return energy(self.arm, self.q, self.qd, g=self.g)
 
     @property
     def error(self):
-        """Reference minus angle, (n, 3) rad."""
+        """Reference minus measured angle, (n, 3) rad."""
         return self.reference[:, 0] - self.q
 
     @property
     def rms_error(self):
-        """Root mean square of the error per joint, (3,) rad."""
+        """Root mean square of the error of each joint, (3,) rad."""
         return np.sqrt(np.mean(self.error**2, axis=0))

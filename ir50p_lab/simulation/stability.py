@@ -1,4 +1,4 @@
-"""Does a finished run look unstable? Limits of the drive keep the numbers finite, so that they alone do not tell."""
+"""Does a finished run look unstable? The drive's limits keep the numbers finite, so that being finite does not tell."""
 
 import numpy as np
 
@@ -8,19 +8,19 @@ _TURN = 2 * np.pi
 
 
 def looks_unstable(t, r, q, u, limit, *, follows=True):
-    """What looks unstable in a run, in one sentence; "" if nothing does.
+    """Return what looks unstable in a run, in one sentence; "" if nothing does.
 
-    Looks at the last quarter of the run, joint by joint, for one of two habits:
+    The last quarter of the run is inspected, joint by joint, for two signs:
 
-    - from limit to limit: the set point rests, yet the command goes from one limit to the other at least three times.
-      Where no limit is known, the largest command of the last quarter stands in, if it is no less than half of the
-      largest of the run and the command is that large at least half of the time: a square wave, as a limit hidden in
-      the controller makes it. (An undamped swing is a sine: near its peaks a fifth of the time.)
-    - run away: the error grew by more than a turn over its start. Not looked for if `follows` is False (no reference
-      was given: nobody asked the arm to be anywhere).
+    - From limit to limit: the set point rests, yet the command goes from one limit to the other at least three times.
+      If no limit is known, the largest command of the last quarter is taken for it, provided that it is at least half
+      of the largest of the run and that the command is that large at least half of the time: a square wave, as a limit
+      hidden in the controller makes it. (An undamped swing is a sine: it is near its peaks a fifth of the time.)
+    - Running away: the error grew by more than a turn over its start. This is not looked for if `follows` is False (no
+      reference was given: nobody asked the arm to be anywhere).
 
     Args: t (n,) s; r (n, 3, 3) reference; q (n, 3) rad; u (n, 3) applied command, and its limit (3,), infinite where
-        none is known. Everything else finite.
+        none is known. Everything else must be finite.
     """
     if len(t) < _FEW:
         return ""

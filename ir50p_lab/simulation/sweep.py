@@ -1,4 +1,7 @@
-"""Sweeps: the same computation for many cases, on all cores or on any executor, resumable, failures kept apart."""
+"""Sweeps: the same computation for many cases, on all cores or on any executor.
+
+A sweep that is stopped can go on later.
+"""
 
 import hashlib
 import json
@@ -12,28 +15,28 @@ from ir50p_lab.errors import InputError
 
 
 class Failure(namedtuple("Failure", "index case error")):
-    """A case that raised: its number, the case, and the error as one line."""
+    """A case that raised: its number, the case itself, and the error as one line."""
 
 
 class SweepResult(namedtuple("SweepResult", "cases results failures")):
-    """cases and results in the order given (None where it failed); failures: list of Failure."""
+    """The outcome of a sweep. cases, results: in the order given (None where it failed); failures: list of Failure."""
 
 
 def sweep(run, cases, *, executor=None, progress=True, save_to=None):
-    """Compute `run(case)` for every case.
+    """Compute `run(case)` for every case, in parallel.
 
     Args:
         run: function of one case; its result is numbers, or dicts, lists and strings of them.
         cases: sequence of cases (numbers, strings, lists, dicts, arrays).
         executor: any `concurrent.futures` executor, such as `distributed.Client().get_executor()` of a Dask cluster;
             default: one process per core of this machine (loky, which also takes functions defined in a notebook).
-        progress: show a progress bar.
-        save_to: file to which every result goes as soon as it is there (JSON, one line per case). Called again with
+        progress: whether a progress bar is shown.
+        save_to: file to which every result is added as soon as it is there (JSON, one line per case). Called again with
             the same file and cases, the sweep goes on where it was interrupted. A file of another `run` or of
-            other cases does no harm: cases are found by their content, under the name of `run`.
+            other cases does no harm, because cases are found by their content and the name of `run`.
 
-    Returns: SweepResult. A case that raises becomes a Failure and does not stop the others; it is tried again on the
-    next call.
+    Returns: SweepResult. A case that raises becomes a Failure and does not stop the others; the next call tries it
+    again.
     Raises: InputError if `save_to` holds something other than a sweep, or a result cannot be written as JSON.
     """
     from tqdm.auto import tqdm
