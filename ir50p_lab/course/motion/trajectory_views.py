@@ -40,7 +40,7 @@ def orders(steps, errors):
 
 
 def bill_panel():
-    """A panel of what a motion asks of the motors: its figure, and update(seconds, shares (n, 3) of each one's most)."""
+    """What a motion asks of the motors: its figure, and update(seconds, shares (n, 3) of each motor's most)."""
     figure, ax = subplots(9.0, 3.4)
     lines = [ax.plot([], [], label=label)[0] for label in JOINT_LABELS]
     for level in (-1, 1):
