@@ -24,13 +24,13 @@ BUDGETS = {  # what there is; the design asks for less in bench, course, launche
     "bench": 2384,
     "identification": 1486,
     "vision": 2279,
-    "course": 9142,  # without the next two
+    "course": 9147,  # without the next two
     "course/publishing": 698,
-    "course/grading": 565,
+    "course/grading": 566,
     "launcher": 589,
     "root": 359,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_725, 20_350, 2_000
+BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_731, 20_364, 2_000
 LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,

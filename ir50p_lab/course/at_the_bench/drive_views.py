@@ -35,7 +35,7 @@ def eight_pushes(bench):
 
 
 def mean_push(first_motion):
-    """How the waist moves when it is pushed: s since the push (50,), the mean way of `eight_pushes` (50,) rad."""
+    """How the waist moves when it is pushed: s since the push (50,), the mean turn after `eight_pushes` (50,) rad."""
     rows = np.searchsorted(first_motion.t, _STARTS - 0.001)
     waist, push = first_motion.q[:, 0], first_motion.u[:, 0]
     moves = [np.sign(push[k]) * (waist[k - 10 : k + 40] - np.mean(waist[k - 40 : k])) for k in rows]
@@ -70,7 +70,7 @@ class Filtered:
 
 
 def circle_figure(centre, radius, recording, wanted, **tips):
-    """The way of the tip from above, its height, and how far behind it is: LabFigure.
+    """The path of the tip from above, its height, and how far behind it is: LabFigure.
 
     Args: wanted: (n, 3) m, places of the tip at the end of the recording's t; tips: label -> (n, 3) m.
     """

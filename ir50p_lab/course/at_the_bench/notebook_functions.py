@@ -27,7 +27,7 @@ def circle(t):
 
 
 def motor_law(t, v, T, L):
-    """Way after the times t since a push, rad: speed v in the end, time constant T, dead time L."""
+    """Turn at the times t after a push, rad: speed v in the end, time constant T, dead time L."""
     on = np.maximum(0, t - L)
     return v * (on - T * (1 - np.exp(-on / T)))
 
@@ -55,6 +55,6 @@ def _loops():
 TASKS = notebook_tasks(
     __file__,
     circle=(circle, _times, "three rows: angles, speeds, zeros", {"tolerance": 1e-6}),
-    motor_law=(motor_law, _pushes, "a way for each t"),
+    motor_law=(motor_law, _pushes, "a turn for each t"),
     once_round=(once_round, _loops, "size and degrees, two numbers", {"results": ("size", "degrees")}),
 )

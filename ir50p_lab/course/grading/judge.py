@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 from tqdm.auto import tqdm
 
 from ir50p_lab.course.grading import sandbox
-from ir50p_lab.course.unknown.hand_in import hand_in
+from ir50p_lab.course.unknown.hand_in import hand_in, lent
 from ir50p_lab.course.unknown.race_day import Raced, RaceDay
 from ir50p_lab.course.unknown.world import World
 from ir50p_lab.errors import InputError, LabError
@@ -44,7 +44,8 @@ def judged(hand_in_of, arms=3, *, seeds=None, seconds=SECONDS):
         folder = _moved_in(path, Path(room))
         words = [*shut_in, "--ro-bind", room, room] if (shut_in := sandbox.bubblewrap()) else []
         races = pool.map(partial(_race, folder, words, seconds), seeds)
-        return RaceDay(tuple(tqdm(races, total=len(seeds), desc="arms")))
+        found = lent(path.read_text(encoding="utf-8", errors="replace"))
+        return RaceDay(tuple(tqdm(races, total=len(seeds), desc="arms")), found)
 
 
 def _moved_in(path, room):

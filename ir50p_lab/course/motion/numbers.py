@@ -1,4 +1,4 @@
-"""Numbers of notebooks 06 and 07: the shortest time of a way, where a joint sticks, a motor's voltage."""
+"""Numbers of notebooks 06 and 07: the shortest time of a motion, where a joint sticks, a motor's voltage."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Figures of notebook 06: a step and its rates, energies, errors, a way and its bill."""
+"""Figures of notebook 06: a step and its rates, energies, errors, a motion and its bill."""
 
 from types import SimpleNamespace
 
@@ -40,7 +40,7 @@ def orders(steps, errors):
 
 
 def bill_panel():
-    """A panel of what a way asks of three motors: its figure, and update(seconds, shares (n, 3) of each one's most)."""
+    """What a motion asks of the motors: its figure, and update(seconds, shares (n, 3) of each motor's most)."""
     figure, ax = subplots(9.0, 3.4)
     lines = [ax.plot([], [], label=label)[0] for label in JOINT_LABELS]
     for level in (-1, 1):
@@ -66,10 +66,10 @@ def honey(M):
     return np.ceil(limit / digit) * digit * np.array([0.125, 0.25, 0.5, 1])
 
 
-def two_ways(t, ways):
-    """Two ways of the arm over t (n,) s, {name: tips (n, 3) m and angles (n, 3) rad}: their heights and speeds."""
+def two_paths(t, paths):
+    """Two paths of the arm over t (n,) s, {name: tips (n, 3) m and angles (n, 3) rad}: their heights and speeds."""
     figure, plane, ax = subplots(9.6, 3.9, cols=2, note=STAMP)
-    for (name, (tips, q)), style in zip(ways.items(), ("-", ":"), strict=True):
+    for (name, (tips, q)), style in zip(paths.items(), ("-", ":"), strict=True):
         plane.plot(np.hypot(tips[:, 0], tips[:, 1]), 1000 * tips[:, 2], style, color=COLOURS["dark"], label=name)
         for joint, label in enumerate(JOINT_LABELS):
             ax.plot(t, np.gradient(q[:, joint], t), style, color=JOINTS[joint], label=label if style == "-" else "")

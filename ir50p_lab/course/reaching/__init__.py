@@ -14,7 +14,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
             "picture_with_ball",
             "seen_circle",
             "true_tip",
-            "way",
+            "path",
         ],
         "functions.find_and_reach": ["edges_of", "strongest"],
         "views": ["looks_figure", "follow_figure"],

@@ -1,4 +1,4 @@
-"""Notebook 18: camera and law of a bench, the way of the arm, and the same reach on many copies of the arm."""
+"""Notebook 18: camera and law of a bench, the path of the arm, and the same reach on many copies of the arm."""
 
 import contextlib
 from dataclasses import replace
@@ -63,7 +63,7 @@ def law_for(bench):
     return OnBench(counts, into, _SPEED)
 
 
-def way(start, goal, seconds=4):
+def path(start, goal, seconds=4):
     """The student's quintic from pose to pose, as Mover takes it. Raises VisionError where the goal is None."""
     if goal is None:
         raise VisionError("there is no pose to go to: no ball is seen, or the arm cannot go there; look at the picture")

@@ -1,4 +1,4 @@
-"""Notebook 14: the ball's way, runs along it, how far off it the tip is; and P and D with a push beside them."""
+"""Notebook 14: the path to the ball, runs along it, how far off it the tip is; and P and D with a push beside them."""
 
 import numpy as np
 
@@ -16,8 +16,8 @@ from ir50p_lab.simulation import simulate
 ABOVE_THE_BALL = np.array([0.42, -0.15, 0.09])  # m, as in 00
 
 
-def kept_way(arm):
-    """07's way from rest to above the ball, and its seconds: the shortest for which 250 counts do, and 0.1 s more."""
+def kept_path(arm):
+    """07's path from rest to above the ball, and its seconds: the shortest for which 250 counts do, and 0.1 s more."""
     rest = rest_pose(arm)
     there = my_robot.reach(ABOVE_THE_BALL, arm.l, rest, parts(arm).limits)
 
@@ -66,13 +66,13 @@ class PushAndPD:
         return np.clip(self.pid.step(t, q, reference) + self.push(q, reference), -255, 255)
 
 
-def robustness(arm, way, seconds):
+def robustness(arm, path, seconds):
     """Errors over the scale of the model and the speed of the loop, by the compiled twin of the law: RobustnessView."""
     smooth = arm.without_friction()
 
     def run(scale, speed):
         law = ComputedTorque(scale * smooth.theta, speed**2, 2 * speed, g=smooth.g, filter_hz=np.inf)
-        return simulate(smooth, law, way, q0=way(0)[0], duration=seconds, step=0.002)
+        return simulate(smooth, law, path, q0=path(0)[0], duration=seconds, step=0.002)
 
     return RobustnessView(np.linspace(0.5, 1.5, 7), np.linspace(3, 33, 7), run, duration=seconds, error_max=200)
 

@@ -6,7 +6,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "far_bench": ["FarBench"],
-        "notebook_functions": ["camera_at"],
+        "notebook_functions": ["both_ways", "camera_at", "most_counts"],
         "race_day": ["Raced"],
         "robot": [
             "COLUMNS",

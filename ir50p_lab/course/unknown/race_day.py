@@ -32,9 +32,10 @@ class Raced:
 
 @dataclass(frozen=True)
 class RaceDay:
-    """races: a tuple of Raced, one of each arm."""
+    """races: a tuple of Raced, one of each arm; lent: names of the functions in the hand-in that are the course's."""
 
     races: tuple
+    lent: tuple = ()
 
     @property
     def median(self):
@@ -54,4 +55,5 @@ class RaceDay:
     def __str__(self):
         rows = [f"arm {number}: {one}" for number, one in enumerate(self.races, 1)]
         rows.append(f"median {self.median:.2f} s, complete on {self.complete} of {len(self.races)} arms")
+        rows += [f"the course's in it: {', '.join(self.lent)}"] if self.lent else []
         return "\n".join([*rows, "won" if self.won else f"not won: {FAST} s and 19 of 20 arms are wanted"])

@@ -8,7 +8,8 @@ from cells import cell
 
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.grading.judge import judged
-from ir50p_lab.course.unknown.hand_in import text_of_hand_in
+from ir50p_lab.course.unknown import both_ways
+from ir50p_lab.course.unknown.hand_in import lent, text_of_hand_in
 from ir50p_lab.errors import InputError
 
 REFERENCE = Path(__file__).parents[2] / "support" / "hand_in" / "unknown_arm.py"
@@ -75,6 +76,15 @@ def test_a_hand_in_takes_along_what_it_rests_on(monkeypatch):
     exec(text, room)
     first, second = room["unknown_arm"](np.array([0.0, 0.5]))
     assert np.allclose(first, 3 * np.tanh([0, 0.5])) and np.allclose(second, np.eye(3))
+
+
+def test_what_the_course_lent_is_told(tmp_path):
+    text = "def unknown_arm(bench):\n    both_ways(np.ones(200))\n    next(bench.race())\n"
+    file = tmp_path / "unknown_arm.py"
+    file.write_text(text_of_hand_in(notebook(text, "unknown_arm", both_ways=both_ways)))
+    day = judged(file, seeds=[1])
+    assert "0 of 3 balls" in str(day) and "the course's in it: both_ways\n" in str(day)
+    assert lent(REFERENCE.read_text()) == ()
 
 
 def test_what_cannot_be_handed_in_is_told():

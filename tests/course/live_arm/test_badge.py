@@ -6,6 +6,7 @@ from cells import cell
 
 from ir50p_lab.course import LiveArm, check, my_robot
 from ir50p_lab.course.kinematics.frame_walk import arm_by_table
+from ir50p_lab.course.kinematics.functions.frames import frames
 from ir50p_lab.course.live_arm.badge import badge_of
 from ir50p_lab.course.start.views import turned_by
 from ir50p_lab.modelling import IR50P
@@ -23,6 +24,13 @@ def test_what_is_not_written_yet_is_not_yours():
     view = LiveArm(IR50P, frames=turned_by(IR50P, stub))
     assert view.options["badge"] == "not written yet"
     assert badge_of(turned_by(IR50P, cell(solutions.source("rot_z"), "rot_z"))) == "yours"
+
+
+def test_what_a_notebook_gives_counts_for_no_badge():
+    drawn = cell(DRAWN, "drawn_by", {"frames": frames})
+    assert badge_of(drawn) == "the course's" and badge_of(drawn, [frames]) == "yours"
+    unwritten = cell(DRAWN, "drawn_by", {"frames": cell(STUB, "frames")})
+    assert badge_of(unwritten, [frames]) == "not written yet"
 
 
 def test_a_table_with_dots_is_not_written_yet_and_rests_on_a_function():

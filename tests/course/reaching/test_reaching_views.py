@@ -84,7 +84,7 @@ def test_a_camera_of_before_is_refused_with_the_remedy(monkeypatch):
 
 def test_no_circle_is_no_pixel_and_none_is_no_way():
     with pytest.raises(VisionError, match="no ball is seen"):
-        views.way(rest_pose(IR50P), None)
+        views.path(rest_pose(IR50P), None)
     with pytest.raises(VisionError, match="no circle"):
         views.seen_circle(np.zeros((60, 80), dtype=bool), [8, 9])
 

@@ -35,7 +35,7 @@ def _motions():
     return [
         *cases,
         (q, qd, reference, bent, 25.0, 10.0),  # one number for all joints
-        (reference[0].copy(), reference[1].copy(), reference, straight, 25.0, 10.0),  # exactly on its way
+        (reference[0].copy(), reference[1].copy(), reference, straight, 25.0, 10.0),  # exactly on its path
         (np.array([0, 1, 0]), np.array([0, 0, 1]), still, bent, 30, 4),  # whole numbers
     ]
 
