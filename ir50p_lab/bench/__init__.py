@@ -1,4 +1,4 @@
-"""The bench: one interface to the arm on the table, a simulated one, or a recording."""
+"""The bench: one interface, whether the arm on the table answers, a simulated arm, or a recording."""
 
 from ir50p_lab import lazy
 

@@ -1,4 +1,4 @@
-"""What is not ideal about an arm on the bench: one table, each number with its reason. Nothing here was measured."""
+"""What is not ideal about an arm on the bench: one table, and a reason for each number. Nothing here was measured."""
 
 from dataclasses import dataclass, fields, replace
 
@@ -11,11 +11,11 @@ from ir50p_lab.inputs import number, vector3, whole
 
 @dataclass(frozen=True, kw_only=True)
 class ArmInstance:
-    """One copy of an arm, with what its drawing does not say.
+    """One copy of an arm, with everything that its drawing does not say.
 
-    Friction, breakaway, motor gains, back-EMF and the limit of the supply are the Arm's (`arm.friction`,
-    `arm.actuators`); this table holds what comes on top. `drawn(seed)` gives one copy of a series; spread=0 gives the
-    nominal one.
+    Friction, breakaway, motor gains, back-EMF and the limit of the supply belong to the Arm (`arm.friction`,
+    `arm.actuators`); this table holds what comes on top. `drawn(seed)` gives one copy of a series; with spread=0 it is
+    the nominal one.
     """
 
     # --- drive
@@ -62,7 +62,7 @@ class ArmInstance:
         whole("unit delay", self.delay, 0, 100)
 
     def drawn(self, seed):
-        """The copy number `seed` of the series: spread 0, its own values (even distribution)."""
+        """Return copy number `seed` of the series: its own values, evenly distributed, and spread 0."""
         even = np.random.default_rng([int(seed), 0]).uniform(-self.spread, self.spread, (5, 3))
         return replace(
             self,
@@ -79,11 +79,11 @@ UNIT = ArmInstance()
 
 
 def chosen_copy(seed):
-    """What the environment makes of copy `seed`: the number of the copy, and a seed of its noise or None.
+    """Return the number of the copy that the environment makes of `seed`, and a seed for its noise or None.
 
-    IR50P_UNIT (whole, default 0) is the copy that `seed=0` means, the others are counted from it: a course that
-    compares two copies compares two neighbours. IR50P_SEED (whole; unset: none) gives the same copy other noise.
-    Raises InputError if one of them is not a whole number from 0.
+    IR50P_UNIT (a whole number, default 0) is the copy that `seed=0` means, and the others are counted from it: a course
+    that compares two copies compares two neighbours. IR50P_SEED (a whole number; unset: none) gives the same copy other
+    noise. Raises InputError if one of them is not a whole number from 0.
     """
     return int(seed) + (_whole("IR50P_UNIT") or 0), _whole("IR50P_SEED")
 

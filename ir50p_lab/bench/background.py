@@ -1,8 +1,9 @@
-"""`bench.start(controller, reference)`: the loop of the lesson in the background, and the handle of it.
+"""`bench.start(controller, reference)`: the loop of the lesson in the background, and the handle to control it.
 
-On hardware it has a process of its own: nothing the notebook does can make it late, and it outlives no notebook. The
-child is told over a pipe what to run, opens the port itself and answers over another pipe. It cuts the drive when its
-parent dies, however that happens; if the child itself dies, no more frames come and the board cuts after 100 ms.
+On hardware the loop has a process of its own: nothing that the notebook does can make it late, and it never outlives
+the notebook. The child is told over a pipe what to run, opens the port itself and answers over another pipe. It cuts
+the drive when its parent dies, however that happens; if the child itself dies, no more frames come and the board cuts
+the drive after 100 ms.
 """
 
 import contextlib
@@ -36,19 +37,19 @@ _NAMES, _FORMATS = "t q u reference clock missed trips".split(), "f8 3f8 3f8 3f8
 
 
 def start(bench, controller, reference=None):
-    """Run `controller` on `reference` in the background, in real time, until stopped; the notebook stays free.
+    """Run `controller` on `reference` in the background, in real time, until it is stopped; the notebook stays free.
 
-    The same cycles as `for sample in bench.run(...)`. If the reference begins elsewhere than the arm stands, the arm
-    first moves there smoothly. On a simulated or replayed arm the loop runs in a thread, on hardware in a process of
-    its own, which cuts the drive when this one dies; both get copies of controller and reference, which must therefore
-    be sendable (a controller that holds an open file is not).
+    The cycles are those of `for sample in bench.run(...)`. If the reference does not begin where the arm stands, the
+    arm first moves there smoothly. On a simulated or replayed arm the loop runs in a thread; on hardware it runs in a
+    process of its own, which cuts the drive when this process dies. Both get copies of controller and reference, so it
+    must be possible to send these to another process (not so with a controller that holds an open file).
 
     Args:
         bench: open Bench. controller: step(t, measured, reference) -> u.
         reference: target(t) -> (q, qd, qdd); None: hold the pose measured at the start.
 
-    Returns: LiveRun. Raises BenchError if the bench is closed or busy, InputError for bad arguments, and what opening
-    the port raises.
+    Returns: LiveRun. Raises BenchError if the bench is closed or busy, InputError for bad arguments, and whatever
+    opening the port raises.
     """
     if IN_BROWSER:
         needs_more("a loop in the background needs threads")
@@ -72,8 +73,8 @@ def start(bench, controller, reference=None):
 class LoopStatistics(namedtuple("LoopStatistics", "cycles missed trips period_p50 period_p99 period_max")):
     """How well the loop keeps time.
 
-    cycles, missed, trips (times the drive was cut because the loop had paused): counts since the start; period_p50,
-    period_p99, period_max: s between measurements, of the last 80 s at most; NaN before there are any.
+    cycles, missed, trips: counts since the start (a trip: the drive was cut because the loop had paused); period_p50,
+    period_p99, period_max: s between measurements, in the last 80 s at most; NaN before there are any.
     """
 
     def __str__(self):
@@ -83,23 +84,23 @@ class LoopStatistics(namedtuple("LoopStatistics", "cycles missed trips period_p5
 
 
 class LiveRun:
-    """A loop in the background: made by `bench.start`.
+    """A loop in the background; `bench.start` makes it.
 
     ================================ ==========================================================================
-    stop()                           end it in order: to the rest pose, then let go
-    cut()                            drive off within a cycle, and the loop ends; the arm sinks
-    set_gains(kp=, ki=, kd=)         from the next cycle on, without a bump; what is left out stays
+    stop()                           end it in order: the arm moves to the rest pose and is let go
+    cut()                            cut the drive within a cycle and end the loop; the arm sinks
+    set_gains(kp=, ki=, kd=)         change gains from the next cycle, without a bump; what is left out stays
     set_point([q1, q2, q3])          go there from where the reference is, at limited speed; rad
-    push(link, point, force)         a hand at a simulated arm, for a second; m in the link's frame, N
+    push(link, point, force)         a hand pushes a simulated arm for a second; m in the link's frame, N
     recent(10)                       the last 10 s: .t .q .u .reference
-    statistics()                     cycles, late ones, periods
+    statistics()                     cycles, late cycles, periods
     join(timeout)                    wait for the end; raises what ended it early
-    alive, phase, error, recording   whether it runs; what it does; what went wrong or None; the file
-    most_push                        N that are felt of a push now; 0 where nobody can push from here
-    gains                            {'kp': (3,), 'ki': (3,), 'kd': (3,)} as ordered last; empty without any to set
+    alive, phase, error, recording   whether it runs; what it does; what went wrong, or None; its Recording
+    most_push                        how much of a push is felt now, N; 0 where nobody can push from here
+    gains                            {'kp': (3,), 'ki': (3,), 'kd': (3,)} as last ordered; empty if it has none
     ================================ ==========================================================================
 
-    A thread of this process runs the loop, or listens to the process that does until it is gone. Orders go into a
+    A thread of this process runs the loop, or it listens to the process that does, until that is gone. Orders go into a
     queue; what the loop tells comes back to `_hear`.
     """
 
@@ -184,12 +185,12 @@ class LiveRun:
 
     @property
     def phase(self):
-        """What it does: 'starting', 'leading in', 'running', 'moving to the rest pose' or 'ended'."""
+        """What the loop does: 'starting', 'leading in', 'running', 'moving to the rest pose' or 'ended'."""
         return self._reports.get("phase", STARTING) if self.alive else ENDED
 
     @property
     def recording(self):
-        """The recording: as it grows, or of a child as far as it is on disk; None if it is not recorded there."""
+        """The Recording as it grows, or that of a child as far as it is on disk; None if the child's is not on disk."""
         if self._process is None:
             return self._bench.recording
         path = self._reports.get("recording")
@@ -201,16 +202,16 @@ class LiveRun:
         return self._ring[np.arange(max(0, end - min(count, _KEPT - 64)), end) % _KEPT]
 
     def recent(self, seconds):
-        """The samples of the last `seconds`, at most 80 s.
+        """Return the samples of the last `seconds`, at most 80 s.
 
-        Returns: record array, t (n,) s, q (n, 3) rad, u (n, 3) PWM counts as sent, reference (n, 3) rad; trips (n,):
+        Returns: record array: t (n,) s, q (n, 3) rad, u (n, 3) PWM counts as sent, reference (n, 3) rad; trips (n,):
         how often the drive had been cut by then because the loop had paused.
         """
         rows = self._latest(1 + math.ceil(seconds / self._bench.period))
         return rows[rows.t >= rows.t.max(initial=0.0) - seconds]
 
     def statistics(self):
-        """How well the loop keeps time: LoopStatistics."""
+        """Return how well the loop keeps time: LoopStatistics."""
         rows = self._latest(_KEPT)
         if len(rows) < 2:
             return LoopStatistics(0, 0, 0, math.nan, math.nan, math.nan)
@@ -223,7 +224,10 @@ class LiveRun:
     # ---- orders
 
     def set_gains(self, kp=None, ki=None, kd=None):
-        """Change gains from the next cycle on; the command does not jump. Raises InputError for bad gains."""
+        """Change gains from the next cycle, without a jump of the command; a gain that is left out stays.
+
+        Raises InputError for gains that are negative or not finite, and for a controller without gains.
+        """
         if not self.gains:
             raise InputError("this controller has no gains kp, ki, kd: there is nothing to change live")
         given = {"kp": kp, "ki": ki, "kd": kd}
@@ -242,23 +246,29 @@ class LiveRun:
 
     @property
     def most_push(self):
-        """The most of a push that is felt now, N; 0 on an arm that is not simulated, and on the way to rest."""
+        """The strongest push that is felt now, N; 0 for an arm that is not simulated, and on the way to rest."""
         return MOST_PUSH if hasattr(self._bench, "push") and self.phase in (LEADING, RUNNING) else 0.0
 
     def push(self, link, point, force):
-        """A hand pushes a simulated arm, see `SimulatedBench.push`. Raises InputError, on any other arm too."""
+        """Let a hand push a simulated arm, see `SimulatedBench.push`.
+
+        Raises InputError for bad arguments and any other arm.
+        """
         if not hasattr(self._bench, "push"):
             raise InputError("only a simulated arm can be pushed from here; no hand at a real arm under drive")
         self._orders.put(("push", checked_push(link, point, force)))
 
     def stop(self, *, wait=True):
-        """End in order: the arm moves to its rest pose and is let go. wait: until that is over."""
+        """End the loop in order: the arm moves to its rest pose and is let go.
+
+        wait: whether to wait until that is over.
+        """
         self._orders.put(("stop", None))
         if wait and not self._wait(_TO_REST):
             self.cut()
 
     def cut(self):
-        """Drive off within one cycle, and the loop ends. The arm sinks. Never raises; may be called at any time."""
+        """Cut the drive within one cycle and end the loop. The arm sinks. Never raises; may be called at any time."""
         if self.is_here():
             return
         self._orders.put(("cut", None))
@@ -266,9 +276,9 @@ class LiveRun:
             self._give_up()
 
     def join(self, timeout=None):
-        """Wait until the loop has ended; at most `timeout` s.
+        """Wait until the loop has ended, at most `timeout` s (None: without limit).
 
-        Returns: whether it has. Raises what ended it early: an error of the controller, a lost board...
+        Returns: whether it has ended. Raises what ended it early: an error of the controller, a lost board...
         """
         ended = self._wait(timeout)
         if self.error is not None:
@@ -276,7 +286,7 @@ class LiveRun:
         return ended
 
     def give_back(self):
-        """The bench is wanted in this process again, with its port. Raises BenchError while the loop runs."""
+        """Give the bench and its port back to this process. Raises BenchError while the loop runs."""
         if self.alive:
             raise BenchError(f"a loop in the background has the arm ({self.phase}): stop() or cut() it first")
         if self._process is not None and self._bench.is_open:

@@ -26,27 +26,27 @@ class Bench:
     """The arm on the bench, opened with `connect()`; `with` guarantees that the drive ends.
 
     ============================ ====================================================================================
-    for sample in run(seconds)   one `Sample` every `period`; in the body call `drive` once
-    drive(pwm)                   PWM counts (3,) in -255..255 for the joints; returns what was really sent
+    for sample in run(seconds)   one `Sample` every `period`; call `drive` once in the body of the loop
+    drive(pwm)                   send PWM counts (3,), -255..255, to the joints; returns what was really sent
     recording                    the Recording of the last run, complete up to the last sample
-    cut()                        drive off at once (the bridges brake)
-    start(controller, reference) the same loop in the background, for the live panel
+    cut()                        cut the drive at once (the bridges brake)
+    start(controller, reference) run the same loop in the background, for the live panel
     close()                      go to the rest pose, let go, release the port
     ============================ ====================================================================================
 
-    A command holds until the next one, at most to the end of its run. Leaving `with` in order moves the arm to its
-    rest pose, where it stays without drive, and then lets go; leaving it by an error or Ctrl-C cuts the drive at once,
-    and the arm sinks as gravity has it.
+    A command holds until the next one, at most to the end of its run. If `with` is left in order, the arm moves to its
+    rest pose, where it stays without drive, and is then let go. If it is left by an error or Ctrl-C, the drive is cut
+    at once, and the arm sinks under gravity.
 
     Subclasses supply `measure` and, where there is something to do, `_open`, `_begin`, `_send`, `_cut` and `_close`.
 
-    A `Run` takes from its bench `measure`, `radians` and `timing`, and writes `last`.
+    A `Run` uses `measure`, `radians` and `timing` of its bench, and writes `last`.
 
     Attributes: arm: Arm (limits, kinematics); calibration: counts to rad; period: s; simulated: bool; name: str;
-    bench_id: which bench it is, on which results are measured, as 'board-0a1b2c' or 'simulated-unit-0' (None: nobody
-    knows, or the board has none yet); is_open: whether the arm is in hand; live_run: the LiveRun that has the arm, or
-    had it last; recording: Recording of the last run (None before); command: PWM counts (3,) that the motors have;
-    gripper: whether it is closed; last: the Sample measured last (None before).
+    bench_id: the bench on which results are measured, such as 'board-0a1b2c' or 'simulated-unit-0' (None: it is not
+    known, or the board has no id yet); is_open: whether the bench has been opened; live_run: the LiveRun that has the
+    arm, or had it last; recording: Recording of the last run (None before); command: PWM counts (3,) that the motors
+    have; gripper: whether it is closed; last: the Sample measured last (None before).
     """
 
     kind = "bench"
@@ -82,7 +82,7 @@ class Bench:
         """A run begins: its time is zero now."""
 
     def measure(self, cycle, drive):
-        """Measure in this cycle of the run; drive: keep the present command alive, else drive nothing.
+        """Measure in this cycle of the run; with `drive` the present command is kept alive, else the drive is off.
 
         Returns: t (s), counts (3,), and whether the watchdog had cut the drive before, so that it is off now.
         """
@@ -98,7 +98,10 @@ class Bench:
         """Release everything; must work in any state."""
 
     def radians(self, counts):
-        """Angles of the counts just measured; only a recording knows better."""
+        """Return the angles (3,) rad of the counts just measured.
+
+        (A replay overrides this with its recorded angles.)
+        """
         return self.calibration.radians(counts)
 
     def _header(self):
@@ -110,7 +113,7 @@ class Bench:
         return CountedPace()
 
     def timing(self, run):
-        """Timing of a run, for the end of its recording: dict; empty on a bench that simulates time."""
+        """Return the timing of a run for the end of its recording: dict, empty on a bench that simulates time."""
         if not isinstance(run.pace, Pace):
             return {}
         return {"late_cycles": run.pace.missed, "watchdog_trips": run.trips}
@@ -133,7 +136,7 @@ class Bench:
     # ---- the contract
 
     def open(self):
-        """Get hold of the arm (`with` and `connect()` do it). Returns the bench."""
+        """Open the bench and take hold of the arm (`with` and `connect()` do it). Returns the bench."""
         if not self.is_open:
             self._open()
             self.is_open = True
@@ -148,7 +151,7 @@ class Bench:
             self.abort()
 
     def close(self):
-        """Go to the rest pose, let go, and release the port. May be called twice."""
+        """Move to the rest pose, let go, and release the port. May be called twice."""
         if not self.is_open:
             return
         try:
@@ -161,7 +164,7 @@ class Bench:
             self.abort()
 
     def abort(self):
-        """Cut the drive and release the port, at once. May be called twice."""
+        """Cut the drive and release the port at once. May be called twice."""
         if not self.is_open:
             return
         self.cut()
@@ -170,9 +173,10 @@ class Bench:
         self._close()
 
     def cut(self):
-        """Drive off at once; a run in a cell goes on without it until the next `drive`, one in the background ends.
+        """Cut the drive at once. A run in a cell goes on without it until the next `drive`; one in the background ends.
 
-        Returns: whether that is known; else the board has not answered, and brakes by itself within 0.1 s.
+        Returns: whether the drive is known to be off. If not, the board has not answered, and it brakes by itself
+        within 0.1 s.
         """
         if self.live_run is not None:
             self.live_run.cut()
@@ -185,8 +189,8 @@ class Bench:
         reference: target(t) -> (q, qd, qdd), handed out as `sample.reference`; record: whether the run is recorded;
         header: further lines for the head of its recording (gains, a note).
 
-        On a bench that follows the clock the drive is cut when the program sends no command for 0.1 s. That becomes an
-        event of the recording, and the next exchange only measures. A pause of more than 0.5 s ends the run.
+        On a bench that follows the clock the drive is cut if the program sends no command for 0.1 s. This becomes an
+        event in the recording, and the next exchange only measures. A pause of more than 0.5 s ends the run.
 
         Raises InputError for a bad duration, for a reference that is not finite, leaves the joint limits or is farther
         than 2 rad from the measured pose, and for what the lab's own file does not allow (`caps`); BenchError if the
@@ -261,9 +265,9 @@ class Bench:
         """Send PWM counts to the three joints; they hold until the next call.
 
         Args:
-            pwm: (3,), -255..255; sign is direction. Rounded to whole counts, limited, and set to 0 for a joint at an
-            end of its travel that would be driven further out.
-            gripper: True closes, False opens, None leaves it. reference: q (3,) rad, which is only recorded.
+            pwm: (3,), -255..255; the sign is the direction. They are rounded to whole counts, limited, and set to 0 for
+            a joint that is at an end of its travel and would be driven further out.
+            gripper: True closes it, False opens it, None leaves it. reference: q (3,) rad, which is only recorded.
 
         Returns: what was really sent, (3,) PWM counts; zeros after a pause in which the drive was cut.
         Raises InputError if pwm is not three finite numbers, or more than the lab's own file allows (the drive is cut
@@ -308,14 +312,17 @@ class Bench:
         return np.array(limited)
 
     def note(self, text, t=None):
-        """Write into the recording what has just been changed (gains, a payload); t: s, default the last sample's."""
+        """Write into the recording what has just been changed (gains, a payload) at t, s; default: the last sample's
+        time.
+        """
         if self._run is not None and self._run.recorder is not None and self.last is not None:
             self._run.recorder.event(self.last.t if t is None else t, text)
 
     def follow(self, controller, reference, seconds, *, record=True, **header):
-        """Run `controller` on `reference` for `seconds`; the loop of the lesson in one call.
+        """Run `controller` on `reference` for `seconds`: the loop of the lesson in one call.
 
-        Returns the Recording (None with record=False). Raises InputError if these are not a controller and a reference.
+        Returns: the Recording (None with record=False). Raises InputError if these are not a controller and a
+        reference, and whatever `run` and `drive` raise.
         """
         check_controller(controller)
         check_reference(reference)
@@ -325,13 +332,13 @@ class Bench:
         return self.recording if record else None
 
     def start(self, controller, reference=None):
-        """Run `controller` on `reference` in the background; see `bench.background`. Returns its handle."""
+        """Run `controller` on `reference` in the background; see `bench.background`. Returns its LiveRun."""
         from ir50p_lab.bench.background import start
 
         return start(self, controller, reference)
 
     def go_to_rest(self):
-        """Move to the rest pose, where the arm stays when let go; not recorded."""
+        """Move to the rest pose, where the arm stays when it is let go. This run is not recorded."""
         controller, reference = trajectory_to_rest(self.arm, self.last.q, self.period, *self.caps[:2])
         for sample in self.run(reference.duration + 0.5, record=False):
             self._run.capped = False

@@ -1,9 +1,9 @@
 """`python3 -m ir50p_lab bench-test`: the first power-on, joint by joint, with small drives; writes what it found.
 
-Steps: noise at rest; each potentiometer turned by hand from end to end; each joint pushed by a drive that rises until
-it moves, first away from the nearer end, then back; the board's watchdog. A joint whose potentiometer is not right is
-not driven. The person at the bench is asked before each step. A simulated arm has no board, and no hand turns it: these
-two steps are left out.
+The steps: noise at rest; each potentiometer turned by hand from end to end; each joint driven by a command that rises
+until it moves, first away from the nearer end, then back; the board's watchdog. A joint whose potentiometer is not
+right is not driven. The person at the bench is asked before each step. A simulated arm has no board, and no hand turns
+it, so these two steps are left out.
 """
 
 import argparse
@@ -34,13 +34,13 @@ _LAY_DOWN = "Lay the arm down so that it stays by itself, something soft under i
 
 
 class Finding(namedtuple("Finding", "step joint passed text")):
-    """What a step found. joint: 1 to 3, 0: all; passed: bool; text: a sentence."""
+    """What a step found. joint: 1 to 3, or 0 for all; passed: bool; text: a sentence."""
 
 
 def bench_test(bench):
-    """Test the joints of an open bench; its drive is cut at the end. Prints and returns the Findings, in order.
+    """Test the joints of an open bench, whose drive is cut at the end. Prints and returns the Findings in order.
 
-    A step returns a sentence, or ends in a BenchError: what is wrong, a broken wire, a runaway...
+    A step that fails becomes a Finding, too: a broken wire, a runaway... (its BenchError as text, passed False).
     """
     findings, sound, breakaway = [], {}, {}
 
@@ -189,7 +189,7 @@ def _watchdog(bench, breakaway):
 
 
 def write_report(bench, findings):
-    """Write what was found into the student's folder results/; returns its path."""
+    """Write what was found into the folder results/ of the student; return the path."""
     date = datetime.datetime.now().astimezone()
     report = {"date": date.isoformat(timespec="seconds"), "findings": [finding._asdict() for finding in findings]}
     path = folder() / f"bench-test-{bench.bench_id}-{date:%Y%m%d-%H%M%S}.json"
@@ -199,7 +199,7 @@ def write_report(bench, findings):
 
 
 def main(arguments=None):
-    """The command. Returns 0 if everything was right, else 1."""
+    """Run the command. Returns 0 if everything was right, else 1."""
     parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab bench-test", description=__doc__.splitlines()[0])
     parser.add_argument("port", nargs="?", help="port of the board, or 'simulated' (default: look for a board)")
     bench = connect(parser.parse_args(arguments).port, record_to=False, q0=rest_pose(load_arm()))

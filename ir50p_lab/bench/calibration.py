@@ -1,4 +1,4 @@
-"""From counts of the converter to joint angles: a straight line per joint, from an experiment (4.1.2)."""
+"""From counts of the converter to joint angles: one straight line per joint, from an experiment (4.1.2)."""
 
 import tomllib
 import warnings
@@ -23,21 +23,21 @@ class JointCalibration:
     """counts = zero + slope q, for each joint.
 
     ============ ================================================================ =====================
-    slope        how many counts a radian makes; > 0 by the wiring rule           (3,) counts/rad
+    slope        how many counts make a radian; > 0 by the wiring rule            (3,) counts/rad
     zero         reading at q = 0                                                 (3,) counts
     stderr_slope standard errors, or None if nobody has measured                  (3,) counts/rad
     stderr_zero                                                                   (3,) counts
-    source       where it is from
+    source       where it comes from
     arm          name of the arm it belongs to ('' for any)
     points       what was measured: for each joint (angles, counts), or ()        rad, counts
-    remarks      what the fit found suspicious, sentences
+    remarks      what the fit found suspicious, as sentences
     ============ ================================================================ =====================
 
-    Counts are those of a 10-bit converter, 0..1023. Make one with `fit_calibration`, keep it with
-    `course.save_result`: then `connect()` takes it for the bench it was measured on.
+    The counts are those of a 10-bit converter, 0..1023. Make a calibration with `fit_calibration` and keep it with
+    `course.save_result`: then `connect()` uses it for the bench on which it was measured.
 
-    Raises InputError if a number is not finite or a slope is 0. Warns SuspiciousArmWarning for a negative slope: then
-    the joint runs away from its set point.
+    Raises InputError if a number is not finite or a slope is 0. Warns (SuspiciousArmWarning) of a negative slope,
+    because then the joint runs away from its set point.
     """
 
     slope: tuple
@@ -63,26 +63,26 @@ class JointCalibration:
                 warnings.warn(said, SuspiciousArmWarning, stacklevel=3)
 
     def radians(self, counts):
-        """Angles of counts; both (3,) or (n, 3)."""
+        """Return the angles, rad, of counts; both (3,) or (n, 3)."""
         return (np.asarray(counts, dtype=float) - self.zero) / self.slope
 
     def counts(self, q):
-        """Counts at angles; both (3,) or (n, 3), not rounded."""
+        """Return the counts, not rounded, at angles q, rad; both (3,) or (n, 3)."""
         return self.zero + np.multiply(self.slope, q)
 
     @property
     def residuals(self):
-        """For each joint with points, measured angle minus angle of the counts, (m,) rad; a list of arrays."""
+        """A list with, for each joint that has points, the measured angle minus the angle of the counts, (m,) rad."""
         lines = zip(self.points, self.slope, self.zero, strict=False)
         return [np.array(q) - (np.array(counts) - zero) / slope for (q, counts), slope, zero in lines]
 
     def header(self):
-        """Lines for the head of a recording."""
+        """Return the lines for the head of a recording: dict of str."""
         lines = {"counts_per_rad": self.slope, "counts_at_zero": self.zero}
         return {name: " ".join(f"{x:.6g}" for x in row) for name, row in lines.items()} | {"calibration": self.source}
 
     def save(self, path):
-        """Write it as a readable file (TOML). Returns the Path. Raises OSError if it cannot be written."""
+        """Write the calibration as a readable file (TOML). Returns the Path. Raises OSError if it cannot be written."""
         import tomlkit
 
         data = {name: value for name, value in asdict(self).items() if name != "points" and value is not None}
@@ -93,7 +93,7 @@ class JointCalibration:
 
     @classmethod
     def load(cls, path):
-        """Read a file that `save` wrote (or a person). Raises InputError that names the file and what is wrong."""
+        """Read a file that `save`, or a person, wrote. Raises InputError, which names the file and what is wrong."""
         try:
             data = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
             points = tuple(_pairs(**data.pop(name)) for name in _JOINTS if name in data)
@@ -126,10 +126,10 @@ _LOWEST, _MIDDLE = 21.0, 512.0  # counts; below the lowest a potentiometer is at
 
 
 def nominal_calibration(arm):
-    """What potentiometers of this arm would read, before anyone has measured them.
+    """Return what potentiometers of this arm would read before anyone has measured them.
 
-    Slopes of the sister arm, smaller where the travel of a joint would not fit into 21..1003 counts; the middle of the
-    travel reads 512. A joint without limits is taken to turn from -pi to pi.
+    The slopes are those of the sister arm, or smaller where the travel of a joint would not fit into 21..1003 counts;
+    the middle of the travel reads 512. A joint without limits is assumed to turn from -pi to pi.
     Args: arm: Arm. Returns: JointCalibration, without standard errors.
 
     >>> from ir50p_lab.bench import nominal_calibration
@@ -146,21 +146,21 @@ def nominal_calibration(arm):
 def fit_calibration(q, counts, *, arm="", source="measured"):
     """Fit counts = zero + slope q to an experiment: the joint stands at angles q, the converter shows counts (4.1.2).
 
-    Which of the two carries the error decides how to fit. A protractor is read to about half a degree, which is one or
-    two counts; counts are averaged to a fraction of one. So the angle is the uncertain number, and q is regressed on
-    counts: q = a + b counts, slope = 1/b, zero = -a/b. The usual direction (counts on q) would take the errors of q for
-    a wider spread of angles and make the slope too small, by the factor var(q)/(var(q) + var(error)). With ten points
-    over a wide range the two differ by less than their standard errors; with a narrow one they do not.
+    How to fit depends on which of the two carries the error. A protractor is read to about half a degree, which is one
+    or two counts; counts are averaged to a fraction of one. So the angle is the uncertain number, and q is regressed on
+    counts: q = a + b counts, slope = 1/b, zero = -a/b. The usual direction (counts on q) would mistake the errors of q
+    for a wider spread of angles and make the slope too small, by the factor var(q)/(var(q) + var(error)). With ten
+    points over a wide range the two fits differ by less than their standard errors; over a narrow range they do not.
 
     Args:
         q, counts: (m, 3), m poses of the whole arm. Angles in rad, counts of the 10-bit converter.
-        arm: Arm or its name, saved with it. source: kept with it (who measured, when).
+        arm: Arm or its name, saved with the fit. source: saved with it, too (who measured, when).
 
-    Returns: JointCalibration with standard errors, points and residuals; its
-    `remarks` name what looks wrong: a point that lies far off, few points, a narrow range, a reading at the end of the
-    track.
-    Raises: InputError for what no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a reading
-    that does not change or does not follow its angle (a potentiometer that wraps, cables of two joints swapped).
+    Returns: JointCalibration with standard errors, points and residuals. Its `remarks` name what looks wrong: a point
+    that lies far off, few points, a narrow range, a reading at the end of the track.
+    Raises: InputError for data that no line fits: fewer than 3 points, angles in degrees, counts outside 0..1023, a
+    reading that does not change or does not follow its angle (a potentiometer that wraps, swapped cables of two
+    joints).
     """
     q, counts = vectors3("q", q), vectors3("counts", counts, unit="counts")
     if q.ndim != 2 or q.shape != counts.shape or len(q) < 3:

@@ -1,6 +1,7 @@
-"""The lab's own file: what the arm of a board may be driven to, and which faults may be made there on purpose.
+"""The lab's own file: how far the arm of a board may be driven, and which faults may be made there on purpose.
 
-IR50P_BENCH_FILE, else bench.toml in the project's folder; a table for each board, by the id that `connect()` says:
+The file is IR50P_BENCH_FILE, else bench.toml in the project's folder. It has a table for each board, named by the id
+that `connect()` prints:
 
     [board-0a1b2c]
     limit_pwm = [160, 200, 120]                        # PWM counts of the joints, or one number for all
@@ -8,8 +9,8 @@ IR50P_BENCH_FILE, else bench.toml in the project's folder; a table for each boar
     workspace = [[0.1, -0.4, 0.0], [0.6, 0.4, 0.7]]    # m, lowest and highest x, y, z of the tip
     faults = ["cable", "process"]                      # of cable, process, motor, potentiometer
 
-What a table leaves out is not capped, except by 255 counts and the arm's travel. Nothing is clipped to a cap: what goes
-beyond it is refused, and the drive cut.
+What a table leaves out is not capped, except by 255 counts and the arm's travel. Nothing is clipped to a cap: whatever
+goes beyond it is refused, and the drive is cut.
 """
 
 import math
@@ -32,14 +33,14 @@ _BESIDE, _FASTER = 0.03, 0.2  # m, rad/s: noise, and what a good controller stra
 
 
 class Caps(namedtuple("Caps", "limit_pwm speed workspace faults source", defaults=_FREE)):
-    """What an arm may be driven to.
+    """How far an arm may be driven.
 
     limit_pwm: (3,) PWM counts; speed: (3,) rad/s; workspace: two corners (3,) m, of the tip; faults: those of FAULTS
-    that may be made on purpose; source: the table and file that say so, "" without one.
+    that may be made on purpose; source: the table and the file that set this, "" without one.
     """
 
     def check(self, what, key, values, spare=0.0):
-        """Raise InputError if one of three `values` is by more than `spare` beyond the cap `key`."""
+        """Raise InputError if one of three `values` exceeds the cap `key` by more than `spare`; `what` names them."""
         cap = np.array(getattr(self, key), dtype=float)
         low, high = cap if key == "workspace" else (-cap, cap)
         if self.source and (np.maximum(low - values, values - high) > spare + 1e-9).any():
@@ -47,7 +48,7 @@ class Caps(namedtuple("Caps", "limit_pwm speed workspace faults source", default
             raise InputError(f"{said}: stay within, or ask whoever keeps the bench")
 
     def check_cycle(self, run, q, rows):
-        """Raise InputError if a reference (3, 3) asks for too much, or the arm, now at q (3,), is driven too far."""
+        """Raise InputError if a reference (3, 3) asks for too much, or if the arm, now at q (3,), is driven too far."""
         if rows is not None:
             self.check("the tip of the reference, m,", "workspace", forward_kinematics(run.bench.arm, rows[0]))
             self.check("the speed of the reference, rad/s,", "speed", rows[1])
@@ -58,14 +59,17 @@ class Caps(namedtuple("Caps", "limit_pwm speed workspace faults source", default
                 self.check("the measured speed, rad/s,", "speed", way[1:4] / way[0], _FASTER)
 
     def check_fault(self, fault):
-        """Raise BenchError if this fault may not be made here on purpose, InputError for one that nobody knows."""
+        """Raise BenchError if this fault may not be made here on purpose, InputError for an unknown fault."""
         if choice("fault", fault, FAULTS) not in self.faults:
             said = f"fault = {fault!r}: {self.source or 'no table of bench.toml'} allows faults = {list(self.faults)}"
             raise BenchError(f"{said}; make it on the simulated arm, connect('simulated')")
 
 
 def caps_of(bench_id):
-    """The Caps of a real bench, by the lab's own file. Raises InputError that names the file and what is wrong."""
+    """Return the Caps of a real bench from the lab's own file.
+
+    Raises InputError, which names the file and what is wrong in it.
+    """
     named = path_setting("IR50P_BENCH_FILE")
     path = named or PROJECT / "bench.toml"
     try:

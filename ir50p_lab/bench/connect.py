@@ -1,4 +1,4 @@
-"""`connect()`: the board if one answers, else the simulated arm; one line says which, why, and how to get the other."""
+"""`connect()`: the board if one answers, else the simulated arm. One line says which, why, and how to get the other."""
 
 import os
 
@@ -13,24 +13,24 @@ _TO_SIMULATED = f"for the simulated arm: connect('simulated') or {VARIABLE}=simu
 
 
 def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=None, **simulated):
-    """Find the bench, open it and say in one line which it is, why, and how to get the other.
+    """Find the bench, open it, and say in one line which it is, why, and how to get the other.
 
-    The first of these that says something: the argument `port`, the environment variable IR50P_BENCH, a board that is
-    plugged in (known by its USB id) and answers, the simulated arm.
+    The first of these that says something decides: the argument `port`, the environment variable IR50P_BENCH, a board
+    that is plugged in (known by its USB id) and answers, and finally the simulated arm.
 
     Args:
         port: 'simulated', 'replay:FILE', or a serial port ('COM3', '/dev/ttyACM0'); None looks for a board.
-        arm: Arm, default `load_arm()`; calibration: counts to rad, default yours, if one was
+        arm: Arm, default `load_arm()`; calibration: counts to rad, by default yours, if one was
         measured on this very bench (`course.results`), else the nominal one; period: s;
-        record_to: folder of the recordings, False for none on disk. simulated: further options of SimulatedBench, as
-        `seed` and `unit`; the other benches take no notice of them, so that a cell runs on any bench (a replay keeps
-        to `realtime`).
+        record_to: folder of the recordings, or False for none on disk. simulated: further options of SimulatedBench,
+        such as `seed` and `unit`; the other benches ignore them, so that a cell runs on any bench (a replay uses
+        `realtime`).
 
     Returns: an open bench, for `with connect() as bench:`.
-    Raises: PortError or BoardError if the port asked for does not open or no board of ours answers there, with the
-    remedy; RecordingError for a file that is not a recording; InputError for a `port` that is none of the above, and
-    for a lab's own file that is wrong (`caps`). A board that was only looked for never raises otherwise: the line says
-    why it was not taken.
+    Raises: PortError or BoardError, with the remedy, if the port you asked for does not open or no board of ours
+    answers there; RecordingError for a file that is not a recording; InputError for a `port` that is none of the above,
+    and for a lab's own file that is wrong (`caps`). If a board was only looked for, nothing else is raised: the line
+    says why it was not taken.
     """
     common = {"arm": arm, "calibration": calibration, "period": period, "record_to": record_to}
     if port is None and not setting(VARIABLE):

@@ -18,8 +18,8 @@ NOISE = 0.05  # rad: an arm at an end of its travel may be measured so far beyon
 def checked_reference(arm, t, value, q=None):
     """Return the value of a reference at t as rows q, qd, qdd (3, 3). Raise InputError if the arm must not go there.
 
-    Its angles must be finite, within the joint limits (or where the arm stands, if that is beyond) and not farther
-    than 2 rad from the measured q (3,) rad; None: not measured yet.
+    Its angles must be finite, within the joint limits (or up to where the arm stands, if that is beyond them) and not
+    farther than 2 rad from the measured q (3,) rad; q None: not measured yet.
     """
     try:
         rows = np.asarray(value, dtype=float)
@@ -42,7 +42,10 @@ def checked_reference(arm, t, value, q=None):
 
 
 def checked_pose(name, arm, q, table=0.0):
-    """A pose q (3,) rad as an array; InputError if it is beyond the travel of the arm or below the table, m."""
+    """Return a pose q (3,) rad as an array. Raise InputError if it is beyond the travel of the arm or below the table.
+
+    table: its height, m.
+    """
     q = vector3(name, q)
     outside = (q < arm.q_min) | (q > arm.q_max)
     if outside.any():
@@ -57,6 +60,9 @@ def checked_pose(name, arm, q, table=0.0):
 
 
 def checked_push(link, point, force):
-    """Return link 1 to 3, point (3,) m and force (3,) N, at most MOST_PUSH. Raise InputError for anything else."""
+    """Return link (1 to 3), point (3,) m and force (3,) N, the force reduced to MOST_PUSH.
+
+    Raises InputError for anything else.
+    """
     point, force = vector3("point", point, unit="m"), vector3("force", force, unit="N")
     return whole("link", link, 1, 3), point, force * min(1.0, MOST_PUSH / max(np.linalg.norm(force), MOST_PUSH))

@@ -1,4 +1,6 @@
-"""Question and answer with the board: sequence numbers, repeats when nothing comes, no answer taken for another's."""
+"""Question and answer with the board: numbered commands, repeated if nothing comes, each matched with its own
+answer.
+"""
 
 from types import SimpleNamespace
 
@@ -23,10 +25,10 @@ class Link:
 
     transport: what serial.Serial offers: timeout, read(n), write(bytes), in_waiting, reset_input_buffer(), close().
     clock: now() and sleep(s).
-    Attributes: statistics: what has happened on the wire since it was opened. commands: sent; repeats: of which again,
-    because no answer came; bad_replies, bad_commands: damaged frames, dropped by the computer and by the board (its
-    counter, which begins at its start and wraps at 65536); watchdog_trips: times that the board cut the drive because
-    no command came for 100 ms.
+    Attribute: statistics, what has happened on the wire since it was opened. commands: how many were sent; repeats: how
+    many of them were repeats, because no answer came; bad_replies, bad_commands: damaged frames, dropped by the
+    computer and by the board (whose counter begins when it starts and wraps at 65536); watchdog_trips: how often the
+    board cut the drive because no command came for 100 ms.
     """
 
     def __init__(self, transport, clock):
@@ -37,11 +39,11 @@ class Link:
         self.statistics = SimpleNamespace(commands=0, repeats=0, bad_replies=0, bad_commands=0, watchdog_trips=0)
 
     def ask(self, kind, pwm=(0, 0, 0), gripper=False, *, patience, repeat=REPEAT):
-        """Send a command and wait for its answer; ask again every `repeat` s without one, `patience` s in all.
+        """Send a command and wait for its answer; ask again every `repeat` s without one, for `patience` s in all.
 
-        An answer to any of the repeats counts: all of them were sent by this call. A program that was stopped while it
-        waited first takes what has come meanwhile.
-        Returns: (State or Identity, when the command was sent that it answers).
+        An answer to any of the repeats counts, because this call sent them all. A program that was stopped while it
+        waited first reads what has come meanwhile.
+        Returns: (State or Identity, the time at which the command that it answers was sent).
         Raises: BoardLostError if no answer came; PORT_ERRORS as they come from the port.
         """
         wanted = protocol.Identity if kind in (protocol.HELLO, protocol.NAME) else protocol.State
@@ -67,7 +69,7 @@ class Link:
         raise BoardLostError(f"no answer for {patience * 1000:.0f} ms")
 
     def tell(self, kind, pwm, gripper):
-        """Send a command and do not wait; its answer is passed over by the next `ask`. Returns its number."""
+        """Send a command without waiting; the next `ask` passes over its answer. Returns its number."""
         self._seq = (self._seq + 1) % 256
         self.statistics.commands += 1
         try:
@@ -78,13 +80,16 @@ class Link:
         return self._seq
 
     def stop(self, gripper=False):
-        """Send STOP, three times at once in case one is damaged, until the board says so; within 50 ms."""
+        """Send STOP, three times at once in case one is damaged, and wait up to 50 ms until the board confirms it.
+
+        Raises BoardLostError if it does not.
+        """
         for _ in range(3):
             self.tell(protocol.STOP, (0, 0, 0), gripper)
         self.ask(protocol.STOP, (0, 0, 0), gripper, patience=0.05)
 
     def forget(self):
-        """Drop all that has come so far and was not read."""
+        """Drop everything that has come so far and was not read."""
         self._transport.reset_input_buffer()
         self._parser = protocol.FrameParser()
 

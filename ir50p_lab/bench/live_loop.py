@@ -1,4 +1,4 @@
-"""The loop in the background, the same on every bench: cycles of measure, obey, command, tell."""
+"""The loop in the background, the same on every bench: each cycle measures, obeys orders, commands, and tells."""
 
 import contextlib
 from itertools import takewhile
@@ -20,14 +20,14 @@ def live_loop(bench, controller, reference, orders, tell):
     """Run until an order says stop or cut, or something fails.
 
     Args:
-        bench: open Bench; controller: anything with step(t, measured, reference); reference: target(t) or None, which
+        bench: open Bench; controller: anything with step(t, measured, reference); reference: target(t), or None, which
         holds the measured pose. orders: queue of (name, content): "stop", "cut" (None), "gains" (dict of (3,)),
-        "set point" (3,) rad, "push" (link, point, force). tell: takes a name and its content: "phase", "recording"
-        (path or None) and "sample": (t, q, u, reference, begin of the cycle in s of a true clock, late cycles, trips of
-        the watchdog), once in each.
+        "set point" (3,) rad, "push" (link, point, force). tell: is called with a name and its content: "phase",
+        "recording" (path or None) and, once in each cycle, "sample": (t, q, u, reference, begin of the cycle in s of a
+        true clock, late cycles, trips of the watchdog).
 
-    After the order to cut or an error the drive is off at once; else the arm moves to its rest pose first, which is
-    not recorded. Raises what controller, reference, bench or `tell` raise.
+    After the order to cut, and after an error, the drive is off at once; otherwise the arm moves to its rest pose
+    first, which is not recorded. Raises what controller, reference, bench or `tell` raise.
     """
     load_controllers()
     trajectory_to_rest(bench.arm, np.zeros(3), bench.period)[1](0.0)  # compiled now: at the end there is no time

@@ -1,7 +1,7 @@
-"""The child's side of a loop in the background that has a process of its own; `background` has the parent's.
+"""The child's side of a background loop that has a process of its own; `background` has the parent's side.
 
-Two pipes lie between them. On either side a thread writes what comes into a queue, and another reads: neither process
-ever waits for the other.
+Two pipes connect them. On either side one thread writes what comes into a queue, and another reads, so that neither
+process ever waits for the other.
 """
 
 import contextlib
@@ -22,7 +22,7 @@ START = f"import sys; sys.path.insert(0, {_PACKAGE_ROOT!r}); from ir50p_lab.benc
 
 
 def write_on(queue, pipe):
-    """In a thread of its own: write each message of the queue into the pipe, at once, until None comes."""
+    """Write each message of the queue into the pipe at once, until None comes; this runs in a thread of its own."""
     with contextlib.suppress(OSError), pipe:
         for message in iter(queue.get, None):
             pickle.dump(message, pipe)

@@ -17,16 +17,16 @@ _SLEEPLESS = getattr(time, "CLOCK_BOOTTIME", getattr(time, "CLOCK_MONOTONIC", No
 
 
 class Clock:
-    """The computer's clock, s from an arbitrary start, and its sleep: what a virtual clock stands in for in tests."""
+    """The computer's clock, in s from an arbitrary start, and its sleep. In tests a virtual clock takes its place."""
 
     @staticmethod
     def now():
-        """The time, s; it counts what a laptop has slept."""
+        """Return the time, s, which goes on while a laptop sleeps."""
         return time.perf_counter() if _SLEEPLESS is None else time.clock_gettime(_SLEEPLESS)
 
     @classmethod
     def sleep(cls, seconds):
-        """Sleep; the last millisecond awake, because a sleeper is often woken late when other programs run."""
+        """Sleep, but stay awake in the last millisecond: other programs often make a sleeper wake late."""
         until = cls.now() + seconds
         if seconds > _AWAKE:
             time.sleep(seconds - _AWAKE)
@@ -35,12 +35,12 @@ class Clock:
 
 
 class CountedPace:
-    """The cycles of a run whose time is a counter: nothing is ever late, and no pause matters. As `Pace`."""
+    """The cycles of a run whose time is a counter: nothing is ever late, and no pause matters. Used like `Pace`."""
 
     armed, missed, cycle = True, 0, -1
 
     def next_cycle(self):
-        """The number of the next cycle."""
+        """Return the number of the next cycle."""
         self.cycle += 1
         return self.cycle
 
@@ -58,11 +58,11 @@ class Pace:
     """The cycles of one run on a clock.
 
     Cycle k is due k periods after the start. One that would begin a whole period late is left out: the loop never runs
-    to catch up, and a pause makes no run longer. Until the first command has been sent, the clock waits for a program
-    that compiles in its first cycle.
+    to catch up, and a pause makes no run longer. Until the first command has been sent, the clock waits, because a
+    program may have to compile in its first cycle.
 
-    Attributes: start: when the run began, heard: when the arm last heard of the program, s on the clock; cycle: number
-    of the last one; missed: cycles that came late or were left out; armed: whether a command was sent.
+    Attributes: start: when the run began; heard: when the arm last heard from the program, both in s on the clock;
+    cycle: number of the last one; missed: cycles that came late or were left out; armed: whether a command was sent.
     """
 
     def __init__(self, clock, period):
@@ -85,13 +85,13 @@ class Pace:
         return self.cycle
 
     def catch_up(self):
-        """Go on to the cycle that it is time for; those before it were left out."""
+        """Skip to the cycle that is due now; those before it count as left out."""
         cycle = max(self.cycle, int((self._clock.now() - self.start) / self._period))
         self.missed += cycle - self.cycle
         self.cycle = cycle
 
     def begins_anew(self):
-        """Return True if nothing was sent during a long first cycle: the run's clock starts again now."""
+        """Return True if nothing was sent during a long first cycle: then the run's clock starts again now."""
         now = self._clock.now()
         if self.armed or now - self.heard <= LONGEST_PAUSE:
             return False
@@ -99,28 +99,30 @@ class Pace:
         return True
 
     def silence(self):
-        """Return how long the driven arm got no command, s, and start to count again."""
+        """Return how long the driven arm has had no command, s, and start to count again."""
         now = self._clock.now()
         silence, self.heard = now - self.heard, now
         return silence if self.armed else 0.0
 
 
 def load_controllers():
-    """Have the compiled controllers loaded, 0.5 s and more: else the first `step` of the first run does it."""
+    """Load the compiled controllers now; the first `step` of the first run would otherwise take 0.5 s or more for
+    it.
+    """
     from ir50p_lab.controllers import PID
 
     PID(kp=(0, 0, 0), limit_pwm=255).step(0.0, np.zeros(3), np.zeros((3, 3)))
 
 
 def cut_said(confirmed):
-    """Return a phrase about a drive that was cut. confirmed: whether the board has answered."""
+    """Return a phrase that says whether the drive was cut. confirmed: whether the board has answered."""
     brakes = f"the board has not confirmed the cut: it brakes by itself within {WATCHDOG:g} s"
     return "the drive has been cut" if confirmed else brakes
 
 
 @contextlib.contextmanager
 def undisturbed():
-    """Until the end no garbage collection looks through what there is now: a notebook's takes longer than WATCHDOG."""
+    """Keep garbage collection off the objects of now until the end: a notebook's takes longer than WATCHDOG."""
     gc.freeze()
     try:
         yield

@@ -1,4 +1,4 @@
-"""Serial ports: which may be our board, opening one, and what to do when that fails."""
+"""Serial ports: which of them may be our board, how to open one, and what to do if that fails."""
 
 import errno
 from collections import namedtuple
@@ -9,11 +9,11 @@ from ir50p_lab.lazy import failed
 
 
 class Port(namedtuple("Port", "device board")):
-    """A serial port: device name, and the board its USB id stands for (None: none that fits the bench)."""
+    """A serial port: its device name, and the board that its USB id stands for (None: none that fits the bench)."""
 
 
 def list_ports():
-    """All serial ports of this computer, those of a Mega 2560 first, then chips of its clones, then the others."""
+    """Return all serial ports of this computer: first those of a Mega 2560, then those with chips of its clones."""
     try:
         import serial  # noqa: F401 - by itself first: a browser tab lacks it, and has no ports
         from serial.tools import list_ports
@@ -26,7 +26,7 @@ def list_ports():
 
 
 def open_port(device, baud):
-    """Open a serial port for us alone.
+    """Open a serial port that no other program may share.
 
     Args: device: name of the port ('COM3', '/dev/ttyACM0'); baud: bit/s.
     Returns: an open serial.Serial.
@@ -47,7 +47,7 @@ def open_port(device, baud):
 
 
 def port_error(device, error):
-    """The PortError for what pyserial raised when opening `device`: what is wrong and what to do."""
+    """Return the PortError for what pyserial raised when opening `device`: what is wrong and what to do."""
     text, number = str(error), getattr(error, "errno", None)
     # Windows reports a port in use as 'access denied', without a number
     if number in (errno.EBUSY, errno.EAGAIN) or "lock port" in text or "PermissionError" in text:

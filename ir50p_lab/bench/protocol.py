@@ -62,28 +62,32 @@ REPLY_SIZE = _STATE.size + _CRC.size
 
 
 class State(namedtuple("State", "seq counts status bad_frames clock_ms")):
-    """Board to computer. counts (3,) quarters of a count; status: see the bits above; the last two wrap at 65536."""
+    """The state of the board, as it sends it to the computer.
+
+    counts: (3,), quarters of a count; status: see the bits above; bad_frames and clock_ms wrap at 65536.
+    """
 
 
 class Identity(namedtuple("Identity", "seq protocol firmware board_id boot reset_cause")):
     """The board's answer to a hello.
 
-    protocol: VERSION; firmware (major, minor); board_id: 24 bits, given once, NO_ID before; boot: number of starts so
-    far, differs after each reset, wraps at 65536; reset_cause: the processor's register MCUSR, 0 if a boot loader has
-    cleared it.
+    protocol: VERSION; firmware: (major, minor); board_id: 24 bits, given once, NO_ID before that; boot: number of
+    starts so far, which differs after each reset and wraps at 65536; reset_cause: the processor's register MCUSR, or 0
+    if a boot loader has cleared it.
     """
 
 
 def encode_command(seq, kind, pwm=(0, 0, 0), gripper=False):
-    """Bytes of a command, with check; seq 0..255; kind HELLO, NAME, DRIVE or STOP; pwm three whole numbers, -255..255.
+    """Return the bytes of a command with its check.
 
-    Raises struct.error for numbers that do not fit.
+    seq: 0..255; kind: HELLO, NAME, DRIVE or STOP; pwm: three whole numbers, -255..255. Raises struct.error for numbers
+    that do not fit.
     """
     return with_check(_COMMAND.pack(COMMAND_SYNC, seq, kind, *map(int, pwm), GRIPPER if gripper else 0))
 
 
 def decode_reply(data):
-    """The State or Identity in REPLY_SIZE bytes, or None if they are neither."""
+    """Return the State or Identity in REPLY_SIZE bytes, or None if they are neither."""
     if data[0] != REPLY_SYNC or data[2] not in (STATE, IDENTITY) or with_check(data[: -_CRC.size]) != data:
         return None
     if data[2] == STATE:
@@ -97,15 +101,15 @@ def decode_reply(data):
 
 
 def with_check(data):
-    """The bytes of a frame and its CRC-32."""
+    """Return the bytes of a frame followed by its CRC-32."""
     return data + _CRC.pack(zlib.crc32(data))
 
 
 class FrameParser:
-    """Finds replies in a stream of bytes, in pieces of any size; counts and drops bytes that are not part of one.
+    """Finds replies in a stream of bytes that comes in pieces of any size; counts and drops everything else.
 
-    After a bad frame it goes on one byte behind its sync byte, so no good frame is lost to the noise before it.
-    Attribute `bad`: how often a sync byte was not the start of a valid frame.
+    After a bad frame it goes on one byte behind the sync byte of that frame, so that no good frame is lost to noise
+    before it. Attribute `bad`: how often a sync byte was not the start of a valid frame.
     """
 
     sync, size, decode = bytes([REPLY_SYNC]), REPLY_SIZE, staticmethod(decode_reply)
@@ -114,7 +118,7 @@ class FrameParser:
         self._buffer, self.bad = b"", 0
 
     def feed(self, data):
-        """Take more bytes. Returns the frames that are complete with them, oldest first."""
+        """Take more bytes. Returns the frames that they complete, oldest first."""
         buffer, size, frames = self._buffer + data, self.size, []
         start = buffer.find(self.sync)
         while 0 <= start <= len(buffer) - size:

@@ -1,4 +1,4 @@
-"""Writes a run to disk sample by sample: whatever happens to the program, what was recorded is there."""
+"""Writes a run to disk sample by sample, so that whatever happens to the program, what was recorded is there."""
 
 import contextlib
 import math
@@ -20,14 +20,14 @@ _ELSEWHERE = "choose another folder with record_to=... or the environment variab
 
 
 class Recorder:
-    """One run into one new file; every sample is handed to the operating system before `write` returns.
+    """One run written into one new file; every sample is handed to the operating system before `write` returns.
 
     Args:
-        head: dict of str for the head of the file; "kind" also goes into its name.
-        folder: where to; None: the folder of the environment variable IR50P_RECORDINGS, else recordings/ in
+        head: dict of str for the head of the file; "kind" also goes into the file's name.
+        folder: where the file goes; None: the folder of the environment variable IR50P_RECORDINGS, else recordings/ in
         the student's folder (IR50P_HOME); False: in memory only. A folder that is missing is made.
 
-    Attributes: recording: a Recording that grows with every sample; path: the file or None.
+    Attributes: recording: a Recording that grows with every sample; path: the file, or None.
     Raises RecordingError if the file cannot be made.
     """
 
@@ -53,7 +53,7 @@ class Recorder:
         self._put(head_text, head)
 
     def write(self, sample, pwm, reference, gripper):
-        """Record one cycle: the Sample, the command (3,) PWM counts, reference (3,) rad or None, gripper bool.
+        """Record one cycle: the Sample, the command (3,) PWM counts, the reference (3,) rad or None, and gripper, bool.
 
         Raises RecordingError if the disk takes no more (memory and file keep what was recorded before), InputError
         for a reference that is not three numbers.
@@ -70,7 +70,7 @@ class Recorder:
         self._put(rows_text, table)
 
     def event(self, t, text):
-        """Record that something was changed at t, s: a line between the samples, which spreadsheets show as text."""
+        """Record that something was changed at t, s, as a line between the samples, which spreadsheets show as text."""
         self.recording.events.append((t, text))
         self._put(event_text, t, text)
 
@@ -91,7 +91,7 @@ class Recorder:
             raise RecordingError(f"{said}. The run ends here. Make room, or {_ELSEWHERE}") from None
 
     def close(self, statistics=None):
-        """End the recording; statistics: dict of numbers about the run for its head. May be called twice."""
+        """End the recording. statistics: dict of numbers about the run, for its head. May be called twice."""
         known = {name: str(value) for name, value in (statistics or {}).items()}
         self.recording.header.update(known)
         with contextlib.suppress(RecordingError):  # a full disk: the samples are there
@@ -102,7 +102,7 @@ class Recorder:
 
 
 def header_of(controller):
-    """The gains of a controller for the head of a recording, if it gives or keeps them."""
+    """Return the lines of a controller for the head of a recording: its `header()`, else the gains that it keeps."""
     if hasattr(controller, "header"):
         return controller.header()
     return {name: " ".join(f"{x:g}" for x in values) for name, values in gains_of(controller).items()}

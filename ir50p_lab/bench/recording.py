@@ -1,4 +1,4 @@
-"""What one run of a bench left behind: arrays, a head that says where they are from, a plot, a file."""
+"""What one run of a bench leaves behind: arrays, a head that says where they come from, a plot, a file."""
 
 import math
 import warnings
@@ -13,7 +13,7 @@ from ir50p_lab.errors import InputError, RecordingError
 
 
 class RecordingWarning(UserWarning):
-    """Something of a recording was left out when it was loaded."""
+    """A part of a recording was left out when it was loaded."""
 
 
 class Recording:
@@ -26,12 +26,12 @@ class Recording:
     u            (n, 3)  PWM counts that were really sent, held from each sample to the next
     reference    (n, 3)  rad, what `drive(..., reference=)` was given
     gripper      (n,)    1 closed, 0 open
-    missed       (n,)    cycles that came late so far
+    missed       (n,)    number of cycles that have come late so far
     ============ ======= =========================================================================
 
-    NaN where something is not known. Arrays are read-only. Attributes: header, dict of str (arm, bench, date,
-    calibration, gains...); path: its file or None; events: what was changed in the middle of the run,
-    [(t in s, text), ...]; truth: of a simulated run that has just ended its Truth, else None: no file keeps it.
+    What is not known is NaN. The arrays are read-only. Attributes: header: dict of str (arm, bench, date,
+    calibration, gains...); path: its file, or None; events: what was changed in the middle of the run,
+    [(t in s, text), ...]; truth: the Truth of a simulated run that has just ended, else None, because no file keeps it.
     """
 
     truth = None
@@ -45,7 +45,7 @@ class Recording:
 
     @classmethod
     def from_arrays(cls, t, q, *, header=None, **known):
-        """A recording from arrays with names and shapes as in the table above; what is left out is not known (NaN).
+        """Make a recording from arrays, named and shaped as in the table above; what is left out is not known (NaN).
 
         Raises InputError for shapes that do not fit each other, RecordingError for values that cannot be: degrees, NaN.
         """
@@ -58,10 +58,10 @@ class Recording:
 
     @classmethod
     def load(cls, path):
-        """Read a recording.
+        """Read a recording from the file at `path`.
 
-        Raises RecordingError naming file, line, what is wrong and the remedy. Warns (RecordingWarning) if the last
-        line was cut off and left out.
+        Raises RecordingError, which names the file, the line, what is wrong and the remedy. Warns (RecordingWarning) if
+        the last line was cut off and is left out.
         """
         header, table, events, cut = recording_file.read(path)
         if cut:
@@ -69,7 +69,10 @@ class Recording:
         return cls(table, header, path=Path(path), events=events)
 
     def save(self, path):
-        """Write the recording to `path` (CSV, as a bench writes it). Returns the path; RecordingError if it cannot."""
+        """Write the recording to `path` (CSV, as a bench writes it); return the path.
+
+        Raises RecordingError if it cannot.
+        """
         text = recording_file.head_text(self.header) + recording_file.rows_text(self._table, self.events)
         try:
             Path(path).write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
@@ -97,14 +100,14 @@ class Recording:
 
     @property
     def simulated(self):
-        """Whether the head says that nothing here was measured."""
+        """Whether the head of the recording says that nothing in it was measured."""
         return self.header.get("simulated", "").lower() == "true"
 
     @property
     def period(self):
-        """Sampling period, s: from the head where it fits the times within 20 %, else their median step.
+        """The sampling period, s: from the head if it fits the times within 20 %, else their median step.
 
-        Where most cycles came late or were left out their times say nothing of it.
+        If most cycles came late or were left out, the times say nothing about it.
         """
         stated = recording_file.stated_period(self.header)
         if len(self) < 2 or (stated > 0 and self.missed[-1] > 0.5 * len(self)):
@@ -113,19 +116,19 @@ class Recording:
         return stated if abs(stated - step) <= 0.2 * step else step
 
     def between(self, t0, t1):
-        """The samples with t0 <= t <= t1 (s), as a Recording of its own; times stay as they are."""
+        """Return the samples with t0 <= t <= t1 (s) as a Recording of its own; the times stay as they are."""
         table = self._table
         header = {**self.header, "cut": f"{t0:g} to {t1:g} s"}
         events = [event for event in self.events if t0 <= event[0] <= t1]
         return Recording(table[(table[:, T] >= t0) & (table[:, T] <= t1)], header, events=events)
 
     def recent(self, seconds):
-        """The last `seconds` as a Recording of its own; cheap while the run goes on."""
+        """Return the last `seconds` as a Recording of its own; this is cheap while the run goes on."""
         count = 1 + math.ceil(seconds / float(self.header.get("period_s", 0.01)))
         return Recording(self._rows[-count * len(COLUMNS) :], self.header)
 
     def plot(self):
-        """Angles (measured: line; set point: dashed) and PWM over time, per joint: a matplotlib Figure.
+        """Return a matplotlib Figure of angles (measured: line; set point: dashed) and PWM over time, joint by joint.
 
         A notebook shows it at the end of a cell. Raises RecordingError if there is no sample.
         """

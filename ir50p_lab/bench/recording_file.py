@@ -1,8 +1,9 @@
-"""The file of a recording: lines `# key: value`, a line of column names, one line per sample; a spreadsheet opens it.
+"""The file of a recording: lines `# key: value`, a line of column names, one line per sample. A spreadsheet opens it.
 
-t in s; q and r (the reference) in rad; counts of the 10-bit converter; u in PWM counts; gripper 1 closed, 0 open;
-missed: cycles late so far. An empty cell is a value that is not known. A spreadsheet may save it with semicolons or
-tabs, and decimal commas. Tables of other programs are read by pandas, and made a recording by `Recording.from_arrays`.
+t is in s; q and r (the reference) in rad; counts are those of the 10-bit converter; u is in PWM counts; gripper: 1
+closed, 0 open; missed: how many cycles were late so far. An empty cell is a value that is not known. A spreadsheet may
+save the file with semicolons or tabs, and with decimal commas. Read tables of other programs with pandas, and make
+them a recording by `Recording.from_arrays`.
 """
 
 import contextlib
@@ -27,7 +28,7 @@ _UNITS = "t s; q rad; counts of the 10-bit converter; u PWM counts; r (reference
 
 
 def table_of(t, q, counts=math.nan, u=math.nan, reference=math.nan, gripper=math.nan, missed=math.nan):
-    """Samples as a table (n, 15), columns as COLUMNS, of arrays (n,) and (n, 3); NaN for what is not known."""
+    """Return samples, given as arrays (n,) and (n, 3), as a table (n, 15) with the columns COLUMNS; NaN: not known."""
     table = np.empty((len(t), len(COLUMNS)))
     table[:, T], table[:, Q], table[:, COUNTS], table[:, U] = t, q, counts, u
     table[:, R], table[:, GRIPPER], table[:, MISSED] = reference, gripper, missed
@@ -35,22 +36,22 @@ def table_of(t, q, counts=math.nan, u=math.nan, reference=math.nan, gripper=math
 
 
 def head_text(header):
-    """The lines before the first sample. header: dict of str."""
+    """Return the lines before the first sample. header: dict of str."""
     return lines_text({FORMAT: 1, "units": _UNITS} | header) + ",".join(COLUMNS) + "\n"
 
 
 def lines_text(header):
-    """Lines of the head that are known only at the end of a run, or all of them: dict of str."""
+    """Return lines of the head: all of them, or those known only at the end of a run. header: dict of str."""
     return "".join(f"# {key}: {_one_line(value)}\n" for key, value in header.items())
 
 
 def lines_of(values):
-    """The lines of samples. values: a list, row after row, columns as COLUMNS."""
+    """Return the lines of samples. values: a list, row after row, with columns as in COLUMNS."""
     return (_ROW * (len(values) // len(COLUMNS)) % tuple(values)).replace("nan", "")
 
 
 def rows_text(table, events=()):
-    """The lines of samples. table: (n, 15), columns as COLUMNS, NaN where not known; events: [(t, text), ...]."""
+    """Return the lines of samples. table: (n, 15), columns COLUMNS, NaN if not known; events: [(t, text), ...]."""
     samples = lines_of(table.ravel().tolist())
     if not events:
         return samples
@@ -60,7 +61,7 @@ def rows_text(table, events=()):
 
 
 def event_text(t, text):
-    """The line that says what was changed at t (s) in the middle of a run."""
+    """Return the line that says what was changed at t (s) in the middle of a run."""
     return f"# event: {t:.3f} s: {_one_line(text)}\n"
 
 
@@ -71,9 +72,9 @@ def _one_line(value):
 def read(path):
     """Read a recording.
 
-    Returns: header (dict of str), table (n, 15) as COLUMNS with NaN where nothing is known, events (tuple of (t,
+    Returns: header (dict of str), table (n, 15) as in COLUMNS with NaN for what is not known, events (tuple of (t,
     text)), and the number of the last line if it was cut off and left out, else None.
-    Raises RecordingError that names the file, the line, what is wrong there, and the remedy.
+    Raises RecordingError, which names the file, the line, what is wrong there, and the remedy.
     """
     try:
         data = Path(path).read_bytes()
@@ -117,7 +118,7 @@ def _decoded(data):
 
 
 def stated_period(header):
-    """The period in a head, s; NaN where it says none."""
+    """Return the period that a head states, s; NaN if it states none."""
     with contextlib.suppress(ValueError):
         return float(header.get("period_s", "nan"))
     return math.nan
@@ -154,7 +155,7 @@ def _number(cell, place):
 
 
 def check(table, places):
-    """Raise RecordingError for the first row (n, 15) whose values cannot be. places: what to call each row."""
+    """Raise RecordingError for the first row of table (n, 15) with impossible values. places: what to call each row."""
     t, repair = table[:, T], "; repair or delete it"
     late = np.append(False, t[1:] <= t[:-1])[:, np.newaxis]
     for columns, bad, why in (

@@ -1,4 +1,4 @@
-"""The replay bench: a recording plays the arm; what your controller would have sent is kept beside what was sent."""
+"""The replay bench: a recording takes the part of the arm; your commands are kept, to compare with those sent then."""
 
 import math
 import os
@@ -13,19 +13,20 @@ from ir50p_lab.errors import InputError, RecordingError
 
 
 class ReplayBench(Bench):
-    """A bench whose samples are those of a recording, from its beginning in each run.
+    """A bench whose samples are those of a recording; each run begins at its first sample.
 
-    `drive` limits and records your command as on every bench, but it moves nothing: the samples show what the
-    recorded command did. Compare `bench.recording.u` (yours) with `bench.original.u` (what was sent then). A run that
+    `drive` limits and records your command as on every bench, but it moves nothing: the samples are what followed from
+    the recorded command. Compare `bench.recording.u` (yours) with `bench.original.u` (what was sent then). A run that
     asks for more than was recorded ends with the recording and says so.
 
     Args:
         recording: Recording, or the path of one.
-        arm: Arm of the limits, default `load_arm()`. realtime: samples come at the recorded pace.
+        arm: Arm whose limits hold, default `load_arm()`. realtime: whether samples come at the recorded pace.
         record_to: folder for recordings of your commands; default: in memory only.
 
-    Attributes: original: the Recording that is played.
-    Raises RecordingError if the file is none, or has no sample; InputError if `recording` or `arm` is something else.
+    Attributes: original: the Recording that is replayed.
+    Raises RecordingError if the file is no recording, or has no sample; InputError if `recording` or `arm` is something
+    else.
     """
 
     kind = "replay"
@@ -59,7 +60,7 @@ class ReplayBench(Bench):
             print(f"The recording ends at t = {self.original.t[-1]:.2f} s, and with it this run.")
 
     def measure(self, cycle, drive):
-        """See `Bench.measure`: what was recorded then."""
+        """Return what was recorded in this cycle; see `Bench.measure`."""
         t = self.original.t
         self._q = self.original.q[cycle]
         if self.realtime:
@@ -68,14 +69,14 @@ class ReplayBench(Bench):
         return float(t[cycle]), self._counts[cycle], False
 
     def radians(self, counts):
-        """See `Bench.radians`."""
+        """Return the angles as they were recorded; see `Bench.radians`."""
         return self._q  # as it was recorded
 
     def _header(self):
         return {"original": str(self.original.path or "in memory")}
 
     def go_to_rest(self):
-        """Nothing: a recording cannot move."""
+        """Do nothing: a recording cannot move."""
 
 
 def _calibration(head):

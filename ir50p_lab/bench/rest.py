@@ -1,4 +1,4 @@
-"""Where the arm may be let go, and how it gets there: undriven it sinks until friction or an end stop holds it."""
+"""Where the arm may be let go, and how it gets there: without drive it sinks until friction or an end stop holds it."""
 
 from functools import cache
 from itertools import pairwise
@@ -13,12 +13,12 @@ _SPEED = 0.5  # rad/s on the trajectory to the rest pose: joint 2 follows it aga
 
 
 def rest_pose(arm):
-    """The lowest pose in which stiction and end stops hold the arm against gravity, (3,) rad.
+    """Return the lowest pose in which stiction and end stops hold the arm against gravity, (3,) rad.
 
-    Of the poses within the joint limits that keep elbow and tip off the table (height 0): joint 1 in the middle of its
-    travel, joints 2 and 3 by search over a grid. Gravity may use 70 % of the breakaway torque; an end stop holds where
-    gravity presses the joint against it. If no pose is held, the one that is nearest to it. A payload
-    changes nothing: it is taken up there.
+    The search is among poses within the joint limits that keep elbow and tip off the table (height 0): joint 1 is in
+    the middle of its travel, joints 2 and 3 go over a grid. Gravity may use 70 % of the breakaway torque; an end stop
+    holds a joint that gravity presses against it. If no pose is held, the one that comes nearest to it is taken. A
+    payload changes nothing, because it is picked up there.
     Args: arm: Arm. Returns: read-only array (3,).
     """
     return _rest_pose(arm.bare)
@@ -42,11 +42,11 @@ def _rest_pose(arm):
 
 
 def trajectory_to_rest(arm, q, period, limit_pwm=255, speed=np.inf):
-    """Controller and reference that bring the arm from q (3,) rad to its rest pose: first joint 2, then the others.
+    """Return a controller and a reference that bring the arm from q (3,) rad to its rest pose, joint 2 first.
 
     Joint 2 lifts the arm off the table before joint 3 folds. The gains are those of Tables 4.1-4.3, except for the
-    integral of joint 2: with 10 it stops up to 0.3 rad short, and then sinks. limit_pwm, speed: what is allowed, PWM
-    counts and rad/s, a number or one of each joint.
+    integral gain of joint 2: with 10 it stops up to 0.3 rad short, and then sinks. limit_pwm, speed: what is allowed,
+    PWM counts and rad/s, one number or one per joint. period: s.
     Returns: PID, reference.
     """
     from ir50p_lab.controllers import PID

@@ -1,4 +1,4 @@
-"""The student's results as files, read: what was measured, when, on which bench; and the newest that counts for one.
+"""The student's result files, read back: what was measured, when, on which bench, and which is the newest for a bench.
 
 `course.lab_book.results` writes them.
 """
@@ -17,8 +17,8 @@ class Result(namedtuple("Result", _FIELDS)):
     """One result: a description NAME.json in `results/` of the student's folder, and the file that it names.
 
     name: such as 'model-2'; kind: 'calibration', 'model' or 'camera'; made, chosen: ISO times, chosen is the later one
-    if an older result was taken again; arm, bench: names; bench_id: of the bench it was measured on; unit, seed: of a
-    simulated arm, else ''; simulated: bool; withdrawn: bool; file: name of the file with the numbers.
+    if an older result was taken again; arm, bench: names; bench_id: of the bench on which it was measured; unit, seed:
+    those of a simulated arm, else ''; simulated: bool; withdrawn: bool; file: name of the file with the numbers.
     """
 
     @property
@@ -31,12 +31,12 @@ class Result(namedtuple("Result", _FIELDS)):
 
 
 def folder():
-    """Where results are kept: Path; it may not exist yet."""
+    """Return the Path of the folder where results are kept; it may not exist yet."""
     return home() / "results"
 
 
 def every():
-    """All Results, the one chosen last at the end. Raises InputError for a file that describes no result."""
+    """Return all Results, the one chosen last at the end. Raises InputError for a file that describes no result."""
     found = []
     for path in {*folder().glob("*-*.json")} - {*folder().glob("bench-test-*.json")}:  # reports of `bench_test`
         try:
@@ -47,13 +47,13 @@ def every():
 
 
 def newest(kind, bench_id, arm):
-    """The Result of this kind for the arm on the bench with this id that was chosen last; None if there is none."""
+    """Return the Result of this kind, for this arm and bench id, that was chosen last; None if there is none."""
     fits = [one for one in every() if (one.kind, one.bench_id, one.arm) == (kind, bench_id, arm) and not one.withdrawn]
     return fits[-1] if fits else None
 
 
 def own_calibration(bench):
-    """The JointCalibration measured on an open bench that counts, or None; its source says which it is."""
+    """Return the newest JointCalibration measured on this open bench, or None; its source says which it is."""
     from ir50p_lab.bench.calibration import JointCalibration
 
     found = newest("calibration", bench.bench_id, bench.arm.name) if bench.bench_id else None

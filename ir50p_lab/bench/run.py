@@ -1,4 +1,4 @@
-"""One run of a bench: its cycles, each a sample, a command and a row of the recording; and what a pause does to it."""
+"""One run of a bench: its cycles, each a sample, a command and a row of the recording; and what a pause leads to."""
 
 import contextlib
 from collections import namedtuple
@@ -12,21 +12,23 @@ from ir50p_lab.errors import BenchError, PauseError
 
 
 class Sample(namedtuple("Sample", "t q counts missed reference", defaults=(None,))):
-    """What the bench says once per period.
+    """What the bench reports once per period.
 
-    t: s since the run began, when it was measured; q: (3,) rad, through the calibration; counts: (3,) counts of the
-    10-bit converter (quarters where the board averages); missed: cycles that came late so far in this run; reference:
-    (3, 3), what the run's reference asks for at t, rows q, qd, qdd in rad, rad/s, rad/s^2 (None without one).
+    t: time of the measurement, s since the run began; q: (3,) rad, through the calibration; counts: (3,) counts of the
+    10-bit converter (quarters of one if the board averages); missed: cycles that came late so far in this run;
+    reference: (3, 3), what the run's reference asks for at t, rows q, qd, qdd in rad, rad/s, rad/s^2 (None without
+    one).
     """
 
 
 class Run:
-    """What belongs to one run.
+    """Everything that belongs to one run.
 
     Args: bench: the Bench that it measures and drives; reference: target(t) or None.
     Attributes: recorder: Recorder or None; pace: Pace or CountedPace; guard: see `Bench._make_guard`; open_row: the
-    Sample whose row is not written yet, for its command may still come; aim: its reference (3,); fault: what has ended
-    it; capped: whether the lab's caps hold, all but that of PWM; trips: of the watchdog.
+    Sample whose row is not written yet, because its command may still come; aim: its reference (3,); fault: what has
+    ended the run; capped: whether the lab's caps hold (that of PWM always does); trips: how often the watchdog cut the
+    drive.
     """
 
     recorder = pace = guard = open_row = aim = fault = None
@@ -63,9 +65,9 @@ class Run:
             return Sample(t, sample.q.copy(), counts.copy(), pace.missed, rows)  # may be written into
 
     def paused(self, silence):
-        """Return True if the watchdog has cut the drive in this silence (s). Then say so and measure again.
+        """Return True if the watchdog has cut the drive in this silence (s), after saying so and measuring again.
 
-        Raises PauseError if the silence was too long: the run has ended.
+        Raises PauseError if the silence was too long: then the run has ended.
         """
         if silence < WATCHDOG:
             return False
@@ -90,7 +92,7 @@ class Run:
         return True
 
     def write_row(self):
-        """Record the last sample with the command that has followed it."""
+        """Record the last sample with the command that followed it."""
         sample, aim, self.open_row, self.aim = self.open_row, self.aim, None, None
         if sample is not None and self.recorder is not None:
             self.recorder.write(sample, self.bench.command, aim, self.bench.gripper)

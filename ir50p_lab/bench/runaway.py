@@ -6,17 +6,18 @@ from the arm's own numbers, in PWM counts.
 against   The joint moves against its command for `WINDOW` and does not slow down. Motor, back-EMF and friction then
           brake it with K|u| + b|qd| + fc; only something stronger keeps it going. Gravity is known; a payload or a
           hand is allowed `HAND` times the stall torque. Behind swapped wires the motor itself is that something: it
-          looks twice as strong as it is, less friction. A joint that is braked, or oscillates, slows down.
+          seems twice as strong as it is, minus friction. A joint that is braked, or oscillates, slows down.
 still     The angle stays within the noise, while a joint loaded by gravity, friction and `PAYLOAD` would have turned by
-          `FRESH`; by `HELD` if it has moved since the drive rose: a hand may hold what moved before. Angle and command
-          do not tell a stuck potentiometer from a blocked joint or a motor without supply.
+          `FRESH`; or by `HELD` if it has moved since the drive rose, because a hand may hold what moved before. Angle
+          and command cannot tell a stuck potentiometer from a blocked joint or a motor without supply.
 beyond    Driven with more than gravity and breakaway for `STRONG` s in all, the joint has not gone there. Gravity is
-          the largest at any angle of its own, for a mirrored potentiometer gives a wrong one, or that with `PAYLOAD`.
+          the largest at any angle of its own, because a mirrored potentiometer gives a wrong angle, or that with
+          `PAYLOAD`.
 under     The measured tip lies more than `UNDER` under the table, for `LOW` blocks with drive or before the run's first
           drive: this cannot be, so an angle is wrong.
 fast      Within two blocks the joint turns `FAST` times as fast as supply, gravity and payload together can turn it.
 
-End stops and the table may hold a joint, and the table may lift it. Joint 3 is not judged with an angle of joint 2 that
+End stops and the table may hold a joint, and the table may lift it. Joint 3 is not judged by an angle of joint 2 that
 may be wrong: it may stand still under its largest gravity. Angles are means over blocks of 50 ms without their
 largest and smallest, so one disturbed sample counts for nothing. The same compiled function watches the loop in Python
 and the compiled loop of the simulated arm.
@@ -63,7 +64,7 @@ Watch = namedtuple("Watch", "theta numbers lag top noise load now block past sti
 
 @jit()
 def push(rows, new):
-    """Move the rows of an array (n, k) up by one place, and put `new` (k,) last."""
+    """Move the rows of an array (n, k) up by one place, and put `new` (k,) into the last."""
     for i in range(rows.shape[0]):
         for j in range(new.size):
             rows[i, j] = rows[i + 1, j] if i + 1 < rows.shape[0] else new[j]
@@ -122,7 +123,7 @@ def _fast(w, i):
 
 @jit()
 def tip_height(n, q):
-    """Height of the tip above the table, m; n: numbers of the arm."""
+    """Return the height of the tip above the table, m; n: numbers of the arm; q: (3,) rad."""
     return n[LENGTHS] + n[LENGTHS + 1] * math.sin(q[1]) + n[LENGTHS + 2] * math.sin(q[1] + q[2]) - n[TABLE]
 
 
@@ -160,9 +161,9 @@ def _alarm(w):
 
 @jit()
 def watch_step(w, t, q, u):
-    """Take a sample q (3,) rad at t s, and the command u (3,) PWM counts since the one before.
+    """Take a sample q (3,) rad at t s, and the command u (3,) PWM counts since the sample before.
 
-    Returns: 0, or the alarm: AGAINST, STILL, FAST_ALARM or BEYOND, and 0 to 2 for the joint; or UNDER_ALARM.
+    Returns: 0, or the alarm: AGAINST, STILL, FAST_ALARM or BEYOND, plus 0 to 2 for the joint; or UNDER_ALARM.
     """
     k, row = w.now[0], np.empty(7)
     if not 0 < t - w.block[-1, 0] < GAP:
@@ -185,10 +186,11 @@ def watch_step(w, t, q, u):
 
 
 class RunawayGuard:
-    """Looks at every sample of a run and raises RunawayError when a joint does not do what its motor makes it do.
+    """Checks every sample of a run and raises RunawayError if a joint does not do what its motor would make it do.
 
-    arm: Arm with actuators; calibration: counts to rad, gives the noise; period: s between two samples; table: its
-    height, m (-inf: none); cut: cuts the drive before an error is raised, and returns whether it is known to be off.
+    arm: Arm with actuators; calibration: counts to rad, from which the noise follows; period: s between two samples;
+    table: its height, m (-inf: none); cut: a function that cuts the drive before an error is raised, and returns
+    whether it is known to be off.
     """
 
     def __init__(self, arm, calibration, period, *, table=0.0, cut=lambda: True):
@@ -211,18 +213,18 @@ class RunawayGuard:
         self.refuse(watch_step(self.watch, sample.t, sample.q, pwm), sample.t)
 
     def begin_anew(self):
-        """A hand is on the arm: what it does is not a runaway. Look at the joints anew from the next block on."""
+        """Judge the joints anew from the next block: a hand is on the arm, and what it does is not a runaway."""
         self.watch.now[1] = 0
 
     def admit(self, pwm):
-        """Before pwm (3,) is sent: raise RunawayError if it is the first drive and the tip lies under the table."""
+        """Raise RunawayError if pwm (3,), about to be sent, is the first drive and the tip lies under the table."""
         if not self._driven and pwm.any():
             now = self.watch.block[-1]
             self.refuse(UNDER_ALARM * (tip_height(self.watch.numbers, now[1:4]) < -UNDER), now[0])
             self._driven = True
 
     def refuse(self, alarm, t):
-        """Raise the RunawayError that `watch_step` means by `alarm`, of a sample at t s; 0: nothing."""
+        """Raise the RunawayError for the alarm of `watch_step` in a sample at t s; do nothing if the alarm is 0."""
         if alarm == 0:
             return
         found, question = self._tip_found() if alarm == UNDER_ALARM else self._joint_found(alarm)

@@ -1,4 +1,4 @@
-"""The bench with the real arm: a Mega 2560 with our firmware on a serial port."""
+"""The bench with the real arm: a Mega 2560 that runs our firmware, on a serial port."""
 
 import contextlib
 import os
@@ -27,19 +27,19 @@ class SerialBench(Bench):
 
     Args:
         port: name of the serial port ('COM3', '/dev/ttyACM0'), or an open pyserial-like object.
-        arm: Arm, default `load_arm()`; calibration: default yours, if one was measured on
+        arm: Arm, default `load_arm()`; calibration: by default yours, if one was measured on
         this board (`result_files`), else the nominal one.
         clock: object with now() and sleep(s); default the computer's. period: s. record_to: folder, or False.
 
-    Time is the true time of a measurement. A cycle that begins late is counted in `Sample.missed`, never raised; see
-    `Pace`.
+    Times are the true times of the measurements. A cycle that begins late is counted in `Sample.missed` and never
+    raises; see `Pace`.
 
-    Raises, when opened: PortError (missing, busy, not permitted), BoardError (not our board or another firmware),
-    InputError (a wrong file of the lab, see `caps`).
-    In a run: BoardLostError if the cable is pulled or the board resets; it brakes 0.1 s after the last command.
-    BoardError if a potentiometer has lost its wire.
+    Raises, when opened: PortError (missing, busy, not permitted), BoardError (not our board, or another firmware),
+    InputError (the lab's own file is wrong, see `caps`).
+    Raises, in a run: BoardLostError if the cable is pulled or the board resets (it brakes 0.1 s after the last
+    command); BoardError if a potentiometer has lost its wire.
 
-    Attributes: statistics: of the wire since it was opened last, see `Link`; identity: what the board has said.
+    Attributes: statistics: of the wire since it was last opened, see `Link`; identity: the board's Identity.
     """
 
     kind = "board"
@@ -87,7 +87,7 @@ class SerialBench(Bench):
         return Pace(self._clock, self.period)
 
     def measure(self, cycle, drive):
-        """See `Bench.measure`: one exchange with the board."""
+        """Measure by one exchange with the board; see `Bench.measure`."""
         kind, command = (protocol.DRIVE, self.command) if drive else (protocol.STOP, (0, 0, 0))
         try:
             state, sent = self._link.ask(kind, command, self.gripper, patience=LOST_AFTER)
@@ -143,18 +143,18 @@ class SerialBench(Bench):
 
     @property
     def firmware(self):
-        """Version of the board's firmware, as '1.1'; the bench must have been open."""
+        """Version of the board's firmware, such as '1.1'; the bench must have been opened before."""
         return "{}.{}".format(*self.identity.firmware)
 
     @property
     def bench_id(self):
-        """The id in the board's memory, as 'board-0a1b2c'; None: the board has none yet, or was never open."""
+        """The id in the board's memory, such as 'board-0a1b2c'; None if it has none yet or was never open."""
         if self.identity is None or self.identity.board_id == protocol.NO_ID:
             return None
         return f"board-{self.identity.board_id:06x}"
 
     def give_id(self):
-        """Give the board a random id if it has none; the board keeps it for good. It brakes. Returns `bench_id`.
+        """Give the board a random id if it has none, and keep it there for good. The board brakes. Returns `bench_id`.
 
         Raises BoardError if the bench is closed or the board does not answer.
         """
@@ -166,7 +166,7 @@ class SerialBench(Bench):
         return self.bench_id
 
     def timing(self, run):
-        """See `Bench.timing`; the counts of the wire with it."""
+        """Return the timing of a run with the counts of the wire; see `Bench.timing`."""
         return vars(self.statistics) | super().timing(run)
 
     # ---- the rest

@@ -1,4 +1,4 @@
-"""A set point moved by hand: the reference runs after it at limited speed."""
+"""A set point that is moved by hand, and a reference that runs after it at limited speed."""
 
 import math
 
@@ -13,13 +13,13 @@ ACCELERATION = 3.0  # largest joint acceleration, rad/s^2: full speed after a qu
 class SetPoint:
     """A pose to hold that may be changed at any time; the reference runs after it at limited speed, without overshoot.
 
-    Each joint accelerates with at most ACCELERATION, moves with at most `speed` and brakes in time: the steps of
-    a slider become a motion that the arm can follow. Call it once per cycle with increasing times, as a loop does: it
-    remembers where it is.
+    Each joint accelerates with at most ACCELERATION, moves with at most `speed` and brakes in time, so that the steps
+    of a slider become a motion that the arm can follow. It remembers where it is: call it once per cycle with
+    increasing times, as a loop does.
 
-    Args: q, qd: (3,) rad and rad/s, where it starts, moving; speed: rad/s, of each joint.
-    Attributes: q, goal: (3,) rad, where it is, and where it is going; set that with `move_to`.
-    Raises InputError on wrong shapes, numbers that are not finite.
+    Args: q, qd: (3,) rad and rad/s, where and how fast the reference starts; speed: rad/s, of each joint.
+    Attributes: q, goal: (3,) rad, where it is, and where it is going; set the goal with `move_to`.
+    Raises InputError on wrong shapes and numbers that are not finite.
     """
 
     duration = math.inf
@@ -30,7 +30,7 @@ class SetPoint:
         self.goal, self._t = self.q, None
 
     def move_to(self, q):
-        """From now on go to q (3,) rad. Raises InputError on anything else."""
+        """Go to q (3,) rad from now on. Raises InputError on anything else."""
         self.goal = vector3("set point", q).copy()
 
     def __call__(self, t):

@@ -1,4 +1,4 @@
-"""The simulated bench: the same contract as the board, without one; as fast as the machine or at the arm's pace."""
+"""The simulated bench: the board's contract without a board, as fast as the machine allows or at the arm's pace."""
 
 from collections import deque, namedtuple
 
@@ -62,21 +62,21 @@ def _compiled_cycles(theta, n, w, x, joint, slope, zero, low, high, queue, pwm, 
 
 
 class Truth(namedtuple("Truth", "t q qd")):
-    """What the simulation knows and no student can: t (n,) s; q (n, 3) rad of the links, qd (n, 3) rad/s."""
+    """What the simulation knows and no student can know: t (n,) s; q (n, 3) rad of the links, qd (n, 3) rad/s."""
 
 
 class SimulatedBench(Bench):
-    """A simulated arm on the bench; its time is a counter of periods, and nothing passes between two runs.
+    """A simulated arm on the bench. Its time is a counter of periods, and no time passes between two runs.
 
     Args:
-        arm: Arm with actuators; default `load_arm()`. unit: table of what is not ideal; seed: which copy of it, and
-        the noise, counted from IR50P_UNIT (IR50P_SEED: other noise). q0: (3,) rad, where the arm stands when first
-        opened (default zero). realtime: pace the cycles by the clock. name: default by arm and seed. options:
-        calibration: default the nominal one, from which the unit differs a little, as a real one does; period: s, whole
-        milliseconds; record_to: folder for recordings, or False for none on disk.
+        arm: Arm with actuators; default `load_arm()`. unit: table of what is not ideal; seed: number of the copy and of
+        its noise, counted from IR50P_UNIT (IR50P_SEED: other noise). q0: (3,) rad, where the arm stands when first
+        opened (default zero). realtime: whether the clock paces the cycles. name: by default made of arm and seed.
+        options: calibration: default the nominal one, from which the unit differs a little, as a real one does; period:
+        s, whole milliseconds; record_to: folder for recordings, or False for none on disk.
 
-    Attributes: plant: the SimulatedArm; truth: Truth of the last run, also of the drive to rest; a recording has
-    its own. For tests and for plots that say so.
+    Attributes: plant: the SimulatedArm; truth: the Truth of the last run, also of the motion to rest (a recording keeps
+    its own). They are for tests, and for plots that say so.
 
     Raises: ArmError without actuators, InputError for a period or q0 that is not possible.
     """
@@ -115,7 +115,9 @@ class SimulatedBench(Bench):
         return Pace(self._clock, self.period) if self.realtime else super()._make_pace()
 
     def measure(self, cycle, drive):
-        """Time is counted in periods; left alone for longer than the board's watchdog allows, the arm has no drive."""
+        """Advance to this cycle and measure; after a silence longer than the board's watchdog allows, the drive is
+        off.
+        """
         for late in range(cycle - self._cycle):
             if self.realtime and late * self.period >= WATCHDOG:
                 self._cut()
@@ -151,12 +153,12 @@ class SimulatedBench(Bench):
     # ---- and what only a simulation can
 
     def push(self, link, point, force):
-        """In a run: a hand pushes at `link` until the next push, for a second at most; zeros: it lets go.
+        """Let a hand push at `link` during a run, until the next push but at most for a second; zeros let go.
 
-        The runaway guard is told, and the recording: in its events, at each whole newton of the components.
+        The runaway guard is told of it, and so are the events of the recording, at each whole newton of a component.
 
-        Args: link: 1, 2 or 3; point: (3,) m in frame `link`, zeros are the far end of the link; force: (3,) N in base
-        coordinates, more than 10 N are 10 N. Raises InputError for anything else, BenchError outside a run.
+        Args: link: 1, 2 or 3; point: (3,) m in frame `link`, whose origin is the far end of the link; force: (3,) N in
+        base coordinates, reduced to 10 N if it is more. Raises InputError for anything else, BenchError outside a run.
         """
         link, point, force = checked_push(link, point, force)
         if self._run is None:
@@ -171,7 +173,7 @@ class SimulatedBench(Bench):
             self.note(pushes if told else f"the hand has let go; it pushed with {self._strongest:.1f} N at most")
 
     def follow(self, controller, reference, seconds, *, record=True, **header):
-        """Run `controller` on `reference` for `seconds`; compiled as a whole when the controller is.
+        """Run `controller` on `reference` for `seconds`; compiled as a whole if the controller is.
 
         The numbers are those of the loop in Python, to the last bit. Returns the Recording (None with record=False).
         """
@@ -207,6 +209,6 @@ class SimulatedBench(Bench):
 
     @property
     def truth(self):
-        """Truth of the last run (of its last 1000 s if it was longer)."""
+        """The Truth of the last run (of its last 1000 s if it was longer)."""
         t, q, qd = zip(*self._truth, strict=True)
         return Truth(np.hstack(t), np.vstack(q), np.vstack(qd))

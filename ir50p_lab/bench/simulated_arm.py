@@ -42,7 +42,7 @@ def _in_play(joint, drive, half, side):
 @on_floats
 @jit()
 def advance_unit(theta, n, w, x, joint, pwm, steps):
-    """Advance drive side x = (q, qd) (6,) and links joint (3,) by `steps` steps with pwm (3,) held."""
+    """Advance the drive side x = (q, qd) (6,) and the links joint (3,) by `steps` steps with pwm (3,) held."""
     q1, q2, q3, a, b, c = x[0], x[1], x[2], x[3], x[4], x[5]
     u1, u2, u3 = _at_motor(n, w, 0, pwm[0]), _at_motor(n, w, 1, pwm[1]), _at_motor(n, w, 2, pwm[2])
     # gravity presses the teeth of joints 2 and 3 together; only where it is small do they have play
@@ -61,7 +61,7 @@ def advance_unit(theta, n, w, x, joint, pwm, steps):
 
 @jit()
 def read_pots(w, joint, noise, counts):
-    """What a 10-bit converter reads at the links (3,) rad, 0..1023: a bowed line and noise (3,) counts."""
+    """Fill counts (3,) with what a 10-bit converter reads at the links (3,) rad, 0..1023: a bowed line and noise."""
     for i in range(3):
         along = (joint[i] - w[LOW, i]) / w[SPAN, i]
         voltage = w[ZERO, i] + w[SLOPE, i] * joint[i] + 4 * w[BOW, i] * along * (1 - along) + noise[i]
@@ -72,16 +72,16 @@ class SimulatedArm:
     """One unit of an arm: PWM counts -> motion -> converter counts, reproducible from its seed.
 
     The drive side (motor and gear, which carry the inertia) moves with dry friction, back-EMF, end stops at the joint
-    limits and a table under the tip; the links, and the potentiometers on them, follow within the play of the gear.
+    limits and a table under the tip. The links, with the potentiometers on them, follow within the play of the gear.
 
     Args:
-        arm: Arm with actuators. unit: ArmInstance; its copy number `seed` is drawn. seed: of the unit and of the noise,
-        counted from IR50P_UNIT (`chosen_copy`).
-        q0: (3,) rad, where it stands; default the zero pose, or the rest pose where zero is not possible.
+        arm: Arm with actuators. unit: ArmInstance, of which copy number `seed` is drawn. seed: of the unit and of the
+        noise, counted from IR50P_UNIT (`chosen_copy`).
+        q0: (3,) rad, where it stands; default the zero pose, or the rest pose if zero is not possible.
 
-    Attributes: arm; unit: the drawn ArmInstance; pushed: whether a hand pushes; seed: its number; noise_seed: None, or
-    what IR50P_SEED says; nominal: JointCalibration a maker would state (the unit differs from it).
-    `q_true`, `qd_true`, `tip_true` are for tests and for plots that say 'truth of the simulation'.
+    Attributes: arm; unit: the drawn ArmInstance; pushed: whether a hand pushes; seed: number of the unit; noise_seed:
+    None, or what IR50P_SEED says; nominal: the JointCalibration that a maker would state (the unit differs from it).
+    `q_true`, `qd_true`, `tip_true` are for tests, and for plots that say 'truth of the simulation'.
     Raises: ArmError if the arm has no actuators, InputError if q0 is not possible.
     """
 
@@ -119,12 +119,14 @@ class SimulatedArm:
         return np.array([unit.motor_gain, unit.dead_zone, play, slope, zero, unit.pot_bow, low, high - low, drag])
 
     def place(self, q):
-        """Put the arm at rest at q (3,) rad, as by hand. Raises InputError if it cannot be there."""
+        """Put the arm at rest at q (3,) rad, as by hand. Raises InputError if it cannot stand there."""
         q = checked_pose("q0", self.arm, q, self.unit.table)
         self._x[:3], self._x[3:], self._joint[:] = q, 0.0, q
 
     def push(self, link, point, force):
-        """A hand pushes from now on: force (3,) N in base coordinates, at point (3,) m of frame `link`; zeros: none."""
+        """Let a hand push from now on with force (3,) N in base coordinates at point (3,) m of frame `link`; zeros let
+        go.
+        """
         self._hand, self.pushed = (link, point, force), bool(np.any(force))
         self._lean()
 
@@ -138,7 +140,7 @@ class SimulatedArm:
         self._numbers[TF : TF + 3] = self._offset - torque * self._numbers[FORCE_SCALE : FORCE_SCALE + 3]
 
     def advance(self, pwm, seconds):
-        """Let `seconds` pass with pwm (3,) counts at the bridges; remainders of the 1 ms steps are kept for later."""
+        """Let `seconds` pass with pwm (3,) counts at the bridges; the rest of a 1 ms step is kept for the next call."""
         if self.pushed:
             self._lean()
         self._late += seconds
@@ -147,26 +149,26 @@ class SimulatedArm:
         advance_unit(*self.arrays, np.asarray(pwm, dtype=float), steps)
 
     def counts(self):
-        """What the 10-bit converter reads now: (3,) whole counts. Each call takes the next noise of the seed."""
+        """Return what the 10-bit converter reads now, (3,) whole counts. Each call takes the next noise of the seed."""
         counts = np.empty(3)
         read_pots(self._w, self._joint, self.noise(1)[0], counts)
         return counts
 
     def noise(self, n):
-        """The next n rows of noise, (n, 3) counts: the same sequence, however it is taken."""
+        """Return the next n rows of noise, (n, 3) counts: the same sequence, in whatever portions it is taken."""
         return self._rng.normal(0.0, self.unit.noise, (n, 3))
 
     @property
     def q_true(self):
-        """Angles of the links (3,) rad, behind the play."""
+        """Angles of the links behind the play, (3,) rad."""
         return self._joint.copy()
 
     @property
     def qd_true(self):
-        """Velocities of the drive side (3,) rad/s."""
+        """Velocities of the drive side, (3,) rad/s."""
         return self._x[3:].copy()
 
     @property
     def tip_true(self):
-        """Position of the tip (3,) m."""
+        """Position of the tip, (3,) m."""
         return forward_kinematics(self.arm, self._joint)
