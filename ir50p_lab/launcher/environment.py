@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ir50p_lab.launcher import inventory
 from ir50p_lab.launcher.file_lock import take_lock
-from ir50p_lab.launcher.installer import Installer
+from ir50p_lab.launcher.installer import Installer, clock
 from ir50p_lab.launcher.problems import COMMAND
 
 LOCK = "environment.txt"
@@ -24,8 +24,11 @@ TEST_LOCK = "environment-test.txt"
 
 _FIRST_RUN = """import ir50p_lab
 try:
-    from ir50p_lab import controllers, modelling, simulation
-    simulation.simulate(modelling.IR50P, controllers.PID(kp=1, limit_pwm=255), (0, 1, -1), duration=0.1, period=0.01)
+    from ir50p_lab import bench, controllers, modelling, signals, simulation
+    pid = controllers.PID(kp=1, limit_pwm=255)
+    simulation.simulate(modelling.IR50P, pid, (0, 1, -1), duration=0.1, period=0.01)
+    with bench.SimulatedBench(modelling.IR50P, record_to=False) as simulated:
+        simulated.follow(pid, signals.hold((0, 0, 0)), 0.1)
 except ImportError:  # what cannot be used is named by the check
     pass"""
 _BUSY = "ir50p_lab-setup.lock"
@@ -123,16 +126,18 @@ class Environment:
         importlib.import_module("ensurepip")  # without it venv fails halfway and does not say why
         importlib.import_module("venv")
         self._empty()
-        print(f"[1/4] Python {sysconfig.get_python_version()} environment")
+        print(f"[1/5] Python {sysconfig.get_python_version()} environment")
         # Not sys.executable: when that is the .venv being rebuilt, it is gone by now. The module venv refuses links.
         installer.run([sys._base_executable, "-m", "venv", str(self.folder.resolve())])
-        self._install_lock("[2/4] packages of", installer, lock_file)
-        print("[3/4] the lab book itself")
+        self._install_lock("[2/5] packages of", installer, lock_file)
+        print("[3/5] the lab book itself")
         # Editable, so that notebooks anywhere import the package as it is here; the build tool is in the lock.
         installer.install("--no-deps", "--no-build-isolation", "--editable", str(self.root))
-        print("[4/4] check: everything is imported, and the simulation compiled, once")
+        print("[4/5] the simulated arm is compiled, once")
         installer.run([str(self.python), "-P", "-c", _FIRST_RUN])  # from anywhere
-        found, error = self.look_inside()
+        print("[5/5] check: everything is imported, once")
+        with clock():
+            found, error = self.look_inside()
         for name, why in (found["broken"] if found else {"the set-up's last step": error}).items():
             print(f"Careful: {name} cannot be used ({why}). '{COMMAND} doctor' says more.")
         # Spare the student JupyterLab's question about news from the web at its first start.

@@ -4,9 +4,12 @@ uv reads neither pip.conf nor PIP_*, so what they say is translated for it, by p
 """
 
 import ast
+import contextlib
 import os
 import subprocess
 import sys
+import threading
+import time
 import tomllib
 from pathlib import Path
 
@@ -65,32 +68,52 @@ class Installer:
         self.run([*self._install, *arguments])
 
     def run(self, command):
-        """Run to the end, the last line shown on a terminal; return the output. Raises SetUpError."""
+        """Run to the end, seconds and last line shown on a terminal; return the output. Raises SetUpError."""
         output = ""
-        with subprocess.Popen(
-            command,
-            env=self._variables,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            encoding="utf-8",
-            errors="replace",
-            pass_fds=self._pass_fds,
-        ) as child:
+        with (
+            clock() as last,
+            subprocess.Popen(
+                command,
+                env=self._variables,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                encoding="utf-8",
+                errors="replace",
+                pass_fds=self._pass_fds,
+            ) as child,
+        ):
             try:
                 for line in child.stdout:
                     output += line
-                    _show(line.strip())
+                    last[0] = line.strip()
             except BaseException:  # an interruption: leave no installer behind that would go on writing
                 child.kill()
                 raise
-            finally:
-                _show("")
         with open(self._environment.log, "a", encoding="utf-8") as log:
             log.write(f"{command}\n{output}")
         if child.returncode:
             raise problems.from_output(output, child.returncode, self._environment.root, self._environment.log)
         return output
+
+
+@contextlib.contextmanager
+def clock():
+    """Show on a terminal how long it has taken so far, and the text in the list that it gives."""
+    ended, last, started = threading.Event(), [""], time.monotonic()
+
+    def tick():
+        while not ended.wait(0.25):
+            _show(f"{time.monotonic() - started:4.0f} s  {last[0]}")
+
+    ticking = threading.Thread(target=tick, daemon=True)
+    ticking.start()
+    try:
+        yield last
+    finally:
+        ended.set()
+        ticking.join()
+        _show("")
 
 
 def _show(text):

@@ -60,7 +60,7 @@ def test_rebuild_starts_from_nothing(tested):
     (tested.venv / "debris.txt").write_text("")
     done = tested.run("setup", "--rebuild", "--tests")
     assert done.returncode == 0, done.stderr
-    assert "[2/4] packages of environment-test.txt" in done.stdout
+    assert "[2/5] packages of environment-test.txt" in done.stdout
     assert not (tested.venv / "debris.txt").exists()
     assert tested.python("import pebble, pebble_test").returncode == 0
 

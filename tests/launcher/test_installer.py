@@ -1,12 +1,14 @@
 """What pip.conf and PIP_* say, as uv is told; uv asks a server as they say."""
 
+import io
 import os
 import subprocess
 import sys
+import time
 
 import pytest
 
-from ir50p_lab.launcher.installer import for_uv
+from ir50p_lab.launcher.installer import clock, for_uv
 
 AS_PIP = ["--index-strategy", "unsafe-best-match"]
 
@@ -58,3 +60,15 @@ def test_settings(line, options, variables):
 def test_a_setting_without_counterpart():
     assert for_uv("global.index-url='https://a'\n:env:.exists-action='i'") is None
     assert for_uv(":env:.exists-action=''") is not None
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_step_without_a_word_is_seen_to_go_on(monkeypatch, terminal):
+    screen = io.StringIO()
+    screen.isatty = lambda: terminal
+    monkeypatch.setattr(sys, "stdout", screen)
+    with clock() as last:
+        last[0] = "a line"
+        time.sleep(1.2)
+    shown = [line.strip() for line in screen.getvalue().split("\r") if line.strip()]
+    assert sorted(set(shown)) == (["0 s  a line", "1 s  a line"] if terminal else [])

@@ -17,7 +17,7 @@ IMPORT_BOTH = "import pebble, ir50p_lab; print(ir50p_lab.__file__)"
 
 
 def test_first_setup_says_what_it_does_and_makes_the_package_importable_anywhere(made):
-    for step in ("[1/4]", "[2/4] packages of environment.txt", "[3/4]", "[4/4]", "Set-up finished"):
+    for step in ("[1/5]", "[2/5] packages of environment.txt", "[3/5]", "[4/5]", "[5/5]", "Set-up finished"):
         assert step in made.first.stdout
     assert "-m', 'uv', 'pip', 'install'" in made.log()
     assert made.python(IMPORT_BOTH).stdout.strip() == str(made.root / "ir50p_lab" / "__init__.py")

@@ -257,7 +257,7 @@ def test_a_lead_puts_the_tip_before_the_ball_by_lead_times_speed():
     assert shown == pytest.approx(early, abs=0.03)
 
 
-def test_a_ball_that_is_lost_is_waited_for():
+def test_a_ball_that_is_lost_is_waited_for(capsys):
     """Half a second after the last look nothing is known of it: the arm stops there, and goes on when it is back."""
     bench, world, locator = rig(lambda t: np.array([0.38, -0.15 + 0.02 * t, 0.03]))
     with bench, Reacher(bench, locator, rest=False) as reacher:
@@ -270,7 +270,8 @@ def test_a_ball_that_is_lost_is_waited_for():
             return see()
 
         locator.look = look
-        log = reacher.follow_ball(11.0)
+        log = reacher.follow_ball(11.0, progress=True)
+    assert "following: " in capsys.readouterr().err
     lost = np.flatnonzero(np.isnan(log.ball[:, 0]))
     first, last = log.t[lost[[0, -1]]]
     assert (np.diff(lost) == 1).all()

@@ -1,6 +1,7 @@
 """Figures of notebook 13: what each step of signal processing brings, and whether residuals are white."""
 
 import numpy as np
+from tqdm.auto import tqdm
 
 from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, origin, subplots
 from ir50p_lab.identification import fit, process, regressor, validate
@@ -44,7 +45,10 @@ class CutoffView:
     def __init__(self, train, valid, cutoffs_hz, *, delay, span):
         self._valid, self._f, self._span = valid.between(span[0] - 2, span[1] + 2), np.asarray(cutoffs_hz), span
         late = {"causal": 0.0, "zero-phase": delay}
-        self.fits = {kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in self._f]) for kind in late}
+        self.fits = {
+            kind: np.array([self._fit(train, valid, kind, f, late[kind]) for f in tqdm(self._f, kind, leave=False)])
+            for kind in late
+        }
         self.figure, left, right = subplots(9.6, 3.8, cols=2)
         self._lines = {
             "causal": left.plot([], [], color=COLOURS["orange"], lw=0.8)[0],

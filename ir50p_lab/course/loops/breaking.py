@@ -9,6 +9,7 @@ Simulated, on the arm of the course; case C on the thesis's own arm, whose gains
 import tomllib
 import warnings
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 
@@ -117,9 +118,9 @@ def name_it(letter, name=...):
     if name is ...:
         print(f"{letter}: put one of these in place of the dots: {', '.join(NAMES)}.")
     elif name == case["name"]:
-        print(f"{letter}, {name}: yes, {case['because']}")
+        print(fill(f"{letter}, {name}: yes, {case['because']}", 100))
     elif name in NAMES:
-        print(f"{letter}, {name}: not this one. {case['clue']}")
+        print(fill(f"{letter}, {name}: not this one. {case['clue']}", 100))
     else:
         print(f"{letter}: {name!r} is none of them: {', '.join(NAMES)}.")
 

@@ -167,7 +167,7 @@ class Reacher(Mover):
         self.grip(False)
         self.move_to(up, lift=0.0)
 
-    def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=None):
+    def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=None, progress=False):
         """Keep the tip over a moving ball: look every `every` s, filter position and velocity, aim ahead.
 
         First a planned trajectory to where the ball is seen, clear of the table; `seconds` count from there.
@@ -175,8 +175,10 @@ class Reacher(Mover):
         behind it, by the difference times its speed. Default 0.04 s, for the arm, with rendered pictures, which show
         this moment; 0.1 s more with any other camera (assumed of a webcam: if you have measured yours, give the sum).
         Where the ball cannot be followed (out of reach, or not seen for 0.5 s) the arm waits at the last place.
-        Returns: FollowLog.
+        progress: whether a bar is shown. Returns: FollowLog.
         """
+        from tqdm.auto import tqdm
+
         from ir50p_lab.bench.set_point import SetPoint
 
         seconds, every = number("seconds", seconds, "> 0", unit="s"), number("every", every, ">= 0", unit="s")
@@ -188,8 +190,10 @@ class Reacher(Mover):
         tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6)
         begin = next_look = last_seen = self._last.t
         job = self._frozen = None
+        bar = tqdm(total=seconds, unit="s", desc="following", leave=False, disable=not progress)
         while self._last.t - begin < seconds:
             t = self._last.t
+            bar.update(t - begin - bar.n)
             if job is None and t >= next_look:
                 next_look = t + every
                 taken, job = t, self._look()
@@ -210,6 +214,7 @@ class Reacher(Mover):
             t = self._last.t  # of the readings that this cycle has brought
             tip = forward_kinematics(self.arm, self._last.q + self.errors)
             log.append((t - begin, tip, tracker.at(t), tracker.velocity))
+        bar.close()
         self.hold(0.3)
         return FollowLog(*(np.array(column) for column in zip(*log, strict=True)), lead=lead)
 
