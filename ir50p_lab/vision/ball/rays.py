@@ -9,9 +9,9 @@ UNIT = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])  # (rays, 2)
 
 
 def cast(image, x, y, rho):
-    """Return the colours (rays, m, 3) at distances rho (m,) px from (x, y) px; and (rays, m), which of them exist.
+    """Return the colours (rays, m, 3) at distances rho (m,) px from (x, y) px.
 
-    Those outside the picture do not.
+    Also returns which of these places are in the picture, bool (rays, m).
     """
     px, py = x + rho * UNIT[:, :1], y + rho * UNIT[:, 1:]
     places = np.float32(px), np.float32(py)

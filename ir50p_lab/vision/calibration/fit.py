@@ -52,9 +52,7 @@ class CameraFit:
 
     @property
     def freedom(self):
-        """Degrees of freedom of the residuals: the count of measured numbers minus those estimated (nine of the
-        camera).
-        """
+        """Degrees of freedom of the residuals: measured numbers minus those estimated (nine of the camera)."""
         shape = 3 * len(self.points[0]) - _GAUGE if self.bent else 0
         return max(1, sum(e.size for e in self.residuals) - 6 * len(self.poses) - len(self.camera) - shape)
 

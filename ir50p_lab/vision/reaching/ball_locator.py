@@ -91,9 +91,7 @@ class BallLocator:
         return self.to_image(self.marker_place(arm, q))
 
     def marker_jacobian(self, arm, q, step=1e-5):
-        """Return d pixel / d q (2, 3), px/rad, of the marker with the arm at q (3,) rad, by differences of `step`
-        rad.
-        """
+        """Return d pixel / d q (2, 3), px/rad, of the marker with the arm at q (3,) rad: by differences."""
         ends = [(self.marker_pixel(arm, q + d), self.marker_pixel(arm, q - d)) for d in step * np.eye(3)]
         return np.column_stack([(forth - back) / (2 * step) for forth, back in ends])
 
