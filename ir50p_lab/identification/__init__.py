@@ -1,6 +1,6 @@
-"""From recordings to numbers: models of the plant, each with the uncertainty of what it found.
+"""From recordings to numbers: models of the plant, each with the uncertainty of what was found.
 
-Names are loaded on first use: importing this package costs nothing.
+Names are loaded on first use, so importing this package costs nothing.
 """
 
 from ir50p_lab import lazy

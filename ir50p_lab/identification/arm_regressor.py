@@ -1,4 +1,4 @@
-"""The regressor: torque = Phi theta, linear in the 20 parameters    (2.50), (2.51) corrected."""
+"""The regressor: torque = Phi theta is linear in the 20 parameters    (2.50), (2.51) corrected."""
 
 import numpy as np
 
@@ -48,11 +48,10 @@ def _fill(gravity, q, qd, qdd, direction, out):
 
 
 def regressor(q, qd, qdd, *, g=STANDARD_GRAVITY, sign=None):
-    """Phi(q, qd, qdd): torque tau = Phi theta with theta as in `Arm.theta`    (2.50), (2.51) corrected.
+    """Return Phi(q, qd, qdd): the torque is tau = Phi theta, with theta as in `Arm.theta`    (2.50), (2.51) corrected.
 
-    The same holds in PWM counts with `Arm.theta_pwm`.
-
-    For a theta with a row per joint (3, 20) it is tau_i = Phi_i theta_i, `np.einsum("nij,ij->ni", Phi, theta)`.
+    The same holds in PWM counts with `Arm.theta_pwm`. For a theta with a row per joint (3, 20), tau_i = Phi_i theta_i:
+    `np.einsum("nij,ij->ni", Phi, theta)`.
 
     Args:
         q, qd, qdd: (3,) or (n, 3), rad, rad/s, rad/s^2.

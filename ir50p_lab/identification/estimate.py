@@ -1,4 +1,4 @@
-"""What a fit found: the 20 parameters per joint, their errors, and which of them the data do not determine."""
+"""What a fit found: the 20 parameters of each joint, their errors, and which of them the data do not determine."""
 
 from dataclasses import dataclass, field
 
@@ -12,7 +12,7 @@ from ir50p_lab.modelling.dynamics import mass_matrix
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Estimate:
-    """Parameters of the model y = Phi theta, one row per joint; usable wherever a theta (3, 20) is.
+    """Parameters of the model y = Phi theta, one row per joint. It can be used wherever a theta (3, 20) can.
 
     ============== ================================================================================ ==============
     field          meaning                                                                          shape
@@ -24,7 +24,7 @@ class Estimate:
     residuals      y - Phi theta                                                                    (n, 3) unit
     sigma          standard deviation of the residuals: rms, over the degrees of freedom            (3,) unit
     columns        names of the parameters that were fitted, one tuple per joint                    3 tuples
-    unidentifiable parameters that the data do not determine, as "joint 2: theta8"                  tuple of str
+    unidentifiable parameters that the data do not determine, such as "joint 2: theta8"             tuple of str
     warnings       doubts about this fit, as sentences                                              tuple of str
     unit           of y: "PWM" or "N m"
     method, rows   how it was fitted; rows: "joint" or "shared"
@@ -47,16 +47,22 @@ class Estimate:
     processing: dict = field(default_factory=dict)
 
     def predict(self, Phi):
-        """Torque or PWM counts Phi theta, (n, 3), of a regressor (n, 3, 20). Raises InputError on another shape."""
+        """Return the torque or PWM counts Phi theta, (n, 3), for a regressor Phi (n, 3, 20).
+
+        Raises InputError on another shape.
+        """
         return np.einsum("nij,ij->ni", blocks("Phi", Phi), self.theta)
 
     def score(self, recording, q=None, u=None):
-        """Validation of "u" on another recording    (Table 4.4), processed with `processing`, as the training was."""
+        """Return the Validation of "u" on another recording    (Table 4.4), processed as the training recording was.
+
+        Args: recording, q, u and errors: as in `validate`; the options are those in `processing`.
+        """
         return validate(self, recording, q, u, **self.processing)
 
     @property
     def summary(self):
-        """The result in sentences: sizes and residuals, parameters that may be zero, warnings."""
+        """The result as a tuple of sentences: sizes and residuals, parameters that may be zero, warnings."""
         sentences = []
         for row, who in _rows(self.rows).items():
             counts = f"{len(self.columns[row])} parameters from {len(self.residuals)} samples"
@@ -82,7 +88,7 @@ def _rows(rows):
 
 
 def impossible_values(theta, stderr, rows):
-    """Sentences about inertial and friction parameters below zero by more than two standard errors."""
+    """Return sentences about inertial and friction parameters that are below zero by more than two standard errors."""
     return [
         f"{who}: {name} = {x:.3g} +- {error:.2g} is hardly possible below 0: noise, a delay? Or use method='bounded'"
         for row, who in _rows(rows).items()
@@ -92,10 +98,10 @@ def impossible_values(theta, stderr, rows):
 
 
 def indefinite_mass(theta):
-    """A sentence if the mass matrix of theta is not positive definite somewhere, else nothing: a list of str.
+    """Return a sentence, as a list, if the mass matrix of theta is not positive definite somewhere; else an empty list.
 
-    Its leading minors keep their signs when each row is divided by its motor's gain, so that this holds for
-    parameters in PWM counts too. The poses are a grid of q2 and q3 over the whole circle.
+    The signs of its leading minors do not change when each row is divided by its motor's gain, so this holds for
+    parameters in PWM counts, too. The poses are a grid of q2 and q3 over the whole circle.
     """
     angles = np.linspace(-np.pi, np.pi, 25)
     q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))

@@ -1,4 +1,4 @@
-"""Motions that tell the parameters apart: Fourier series for which the regressor's condition number is small."""
+"""Motions that tell the parameters apart: Fourier series that give the regressor a small condition number."""
 
 from dataclasses import dataclass
 
@@ -21,8 +21,8 @@ _STARTS = 400  # random motions tried at first, from full size down to 2 %, unti
 class Excitation:
     """What `optimise_excitation` found.
 
-    reference: Fourier, ready for a bench (`q_start` first); before: the random motion that the search began with.
-    condition_before, condition_after: (3,), one per joint, of the columns scaled to length 1.
+    reference: Fourier, ready for a bench (move to its `q_start` first); before: the random motion with which the search
+    began. condition_before, condition_after: (3,), one per joint, of the columns scaled to length 1.
     """
 
     reference: Fourier
@@ -32,10 +32,10 @@ class Excitation:
 
 
 def regressor_condition(motion):
-    """Condition number of the regressor along one period of a Fourier motion, its columns scaled to length 1: (3,).
+    """Return the condition number (3,) of the regressor along one period of a Fourier motion, one number per joint.
 
-    One per joint. 1 is best: every parameter acts on the torque in its own way. 100: some combination of parameters
-    acts on it 100 times less than another, and is found with 100 times the error.
+    Its columns are scaled to length 1. 1 is best: every parameter acts on the torque in its own way. 100 means that
+    some combination of parameters acts on it 100 times less than another, and is found with 100 times the error.
     """
     return _judged(motion)[0]
 
@@ -64,20 +64,21 @@ def optimise_excitation(
     seed=0,
     progress=True,
 ):
-    """Fourier motion with a small condition number of the regressor, inside the limits of the arm    (4.2).
+    """Find a Fourier motion with a small condition number of the regressor, inside the limits of the arm    (4.2).
 
-    Random search: the coefficients and the mean pose are changed at random, and a change is kept if the motion stays
-    inside the limits and the mean logarithm of the joints' condition numbers (of the columns that act on the joint,
-    each scaled to length 1) becomes smaller. From rest to rest by construction. Of the arm only lengths, limits and
-    no-load speeds are used: what a drawing and a data sheet tell.
+    It is a random search: the coefficients and the mean pose are changed at random, and a change is kept if the motion
+    stays inside the limits and the cost becomes smaller: the mean logarithm of the joints' condition numbers (of the
+    columns that act on the joint, each scaled to length 1), plus the price `standing`. Every motion goes from rest to
+    rest by construction. Of the arm only lengths, limits and no-load speeds are used: what a drawing and a data sheet
+    tell.
 
     Args:
         arm: Arm with finite joint limits. period: s; harmonics: 2..12; periods: whole number, length of the record.
         max_joint_speed, table, margin: as in `fourier`.
         standing: price of time near standstill, where a joint may stick and the model does not hold. With 4, a tenth of
             the time there (mean of 1/(1 + (qd/0.1 rad/s)^2)) costs as much as a condition number 1.5 times as large.
-        tries: number of changes; more take longer (default: some seconds) and find a little better.
-        seed: the same seed gives the same motion. progress: show a bar.
+        tries: number of changes; more take longer (default: some seconds) and find a slightly better motion.
+        seed: the same seed gives the same motion. progress: whether a bar is shown.
 
     Returns: Excitation. Raises: InputError on bad arguments; IdentificationError if no motion fits the limits.
     """

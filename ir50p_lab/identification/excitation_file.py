@@ -1,4 +1,4 @@
-"""Motions in a file: what took long to optimise is kept, with the command that made it."""
+"""Motions in a file: what took long to optimise is kept, together with the command that made it."""
 
 import json
 from pathlib import Path
@@ -10,10 +10,10 @@ DATA = Path(__file__).resolve().parents[2] / "data" / "excitation_ir50p.json"
 
 
 def load_excitations(path=DATA):
-    """Motions from a file as data/excitation_ir50p.json, which is the default: {name: Fourier}.
+    """Return the motions in a file, {name: Fourier}; by default those of data/excitation_ir50p.json.
 
     That file holds "plain" (random coefficients as large as the limits allow), "training" and "validation 1" to
-    "validation 20" (optimised, tried in simulation). Raises InputError if the file cannot be read or is no such file.
+    "validation 20" (optimised, tried in simulation). Raises InputError if the file cannot be read or has another form.
     """
     try:
         rows = json.loads(Path(path).read_text(encoding="ascii"))["motions"]

@@ -1,4 +1,4 @@
-"""`fit`: the 20 parameters from a regressor and measured torque or PWM, free or within physical bounds."""
+"""`fit`: the 20 parameters from a regressor and measured torque or PWM, either free or within physical bounds."""
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -15,22 +15,22 @@ _THETA4, _THETA6 = NAMES.index("theta4"), NAMES.index("theta6")
 
 
 def fit(Phi, y, *, method="ls", rows="joint", columns="rigid", l2=None, use=None, unit="PWM"):
-    """Parameters theta of y = Phi theta    (2.35), their standard errors, and which of them the data do not determine.
+    """Fit theta of y = Phi theta    (2.35); find its standard errors, and which parameters the data do not determine.
 
     Args:
         Phi: (n, 3, 20) as `regressor` returns; y: (n, 3), in `unit`.
         method: "ls": the least sum of squares, by QR; "bounded": the same with inertial and friction terms >= 0 and
-            offsets free. Weights: multiply the rows of Phi and y by 1/sigma.
-        rows: "joint": each joint its own parameters, right for motors of unequal gain. "shared": one theta for all,
-            as the thesis: right for torque, or for equal motors (2.47 corrected).
-        columns: "rigid" (all but theta7 and theta8, which no rigid body has), "thesis" (all 20).
-        l2: length of the upper arm, m: ties theta6 = l2 theta4, as for every in-line arm.
-        use: (n, 3) bool: samples of a joint that count, as `Motion.use`; default all. unit: "PWM" or "N m".
+            offsets free. For weights, multiply the rows of Phi and y by 1/sigma.
+        rows: "joint": each joint has its own parameters, which is right for motors of unequal gain. "shared": one theta
+            for all, as in the thesis, which is right for torque, or for equal motors (2.47 corrected).
+        columns: "rigid" (all except theta7 and theta8, which no rigid body has), "thesis" (all 20).
+        l2: length of the upper arm, m: ties theta6 = l2 theta4, as in every in-line arm.
+        use: (n, 3) bool: the samples of each joint that count, as `Motion.use`; default all. unit: "PWM" or "N m".
 
-    Returns: Estimate. A column that is a combination of others in these data is left out, and named: its parameter is
-    0 with stderr inf. What "bounded" leaves at a bound is named, its stderr is inf. Standard errors also hold for
-    residuals that are correlated in time, as they are after a filter. They assume that Phi is free of noise; noise in
-    it biases both methods.
+    Returns: Estimate. A column that is a combination of others in these data is left out and named: its parameter is
+    0 with stderr inf. A parameter that "bounded" leaves at a bound is named, too, and its stderr is inf. The standard
+    errors also hold for residuals that are correlated in time, as they are after a filter. They assume that Phi is free
+    of noise; noise in it biases both methods.
     Raises: InputError on bad arguments; IdentificationError if there are too few samples, no motion, or the bounded fit
         cannot settle.
     """

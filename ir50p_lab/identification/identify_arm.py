@@ -1,4 +1,4 @@
-"""From recordings to a model in one function: process, fit with physical bounds, give the errors."""
+"""From recordings to a model in one function: process, fit within physical bounds, give the errors."""
 
 from dataclasses import replace
 
@@ -25,22 +25,22 @@ def identify(
         model = identify(recording, l2=0.2)
         print(model.score(another_recording))                                              # Table 4.4
 
-    1. `process`: zero-phase low pass at 1.2 Hz and central differences; u taken at the moment it acted;
+    1. `process`: zero-phase low pass at 1.2 Hz and central differences; u taken at the moment when it acted;
     2. samples of a joint slower than `slow` are left out: there it may stick, and u may be anything;
     3. `regressor` with tanh(qd/0.05) for sgn(qd);
     4. `fit` joint by joint, inertial and friction terms >= 0, and theta6 = l2 theta4 if l2 is given.
 
     Args:
         recordings: a Recording (t, q, u), or a list of them: other motions of the same arm under the same load. One
-            that contradicts the others is named, and the errors reach to what each says.
-        l2: upper arm, m, or None. delay: s from a sample to the moment its u acts. slow: rad/s.
-        method: of `fit`.
+            that contradicts the others is named, and the errors are widened to cover what each says.
+        l2: length of the upper arm, m, or None. delay: s from a sample to the moment when its u acts. slow: rad/s.
+        method: as in `fit`.
         cutoff_hz: Hz, above the frequencies of the motion; held: as in `process`; unit: of u.
         anyway: go on where the data are refused.
 
-    Made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by some per
-    cent. In a record of this length that is more than the standard errors, which leave it out. Where the parameters
-    themselves or Stribeck friction matter, go on with `output_error`.
+    The model is made for prediction. Noise of the angles, the low cut-off and the soft sign bias single parameters by
+    some per cent. In a record of this length that is more than the standard errors, which do not include it. If the
+    parameters themselves or Stribeck friction matter, go on with `output_error`.
 
     Returns: Estimate, whose `score` processes other recordings in the same way.
     Raises: InputError, IdentificationError as `process` and `fit` do, and if a joint is constant, its angle clipped,

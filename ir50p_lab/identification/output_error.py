@@ -1,4 +1,4 @@
-"""Output error: the model whose simulated closed loop is most like the recorded one; it finds Stribeck friction too."""
+"""Output error: the model whose simulated closed loop is most like the recorded one, Stribeck friction included."""
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -30,8 +30,10 @@ _FREE = np.isin(NAMES, FREE_OF_SIGN)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OutputError:
-    """What `output_error` found: theta (3, 20) PWM with stderr (nan: not part of the fit), breakaway friction fs (3,)
-    PWM and Stribeck speed qs (3,) rad/s (1.117) with theirs; delay s; warnings: tuple of str.
+    """What `output_error` found.
+
+    theta: (3, 20) in PWM counts, with its stderr (nan: not part of the fit); fs: breakaway friction, (3,) PWM counts,
+    and qs: Stribeck speed, (3,) rad/s (1.117), with fs_stderr and qs_stderr; delay: s; warnings: tuple of str.
     """
 
     theta: np.ndarray
@@ -45,16 +47,17 @@ class OutputError:
     unit: str = "PWM"
 
     def score(self, recording, controller, reference=None):
-        """Simulate the loop of another recording: (Validation of "q", Validation of "u")."""
+        """Simulate the loop of another recording; return (Validation of "q", Validation of "u")."""
         run = ClosedLoopRun(recording, controller, reference, delay=self.delay)
         q, u = run.simulate(self.theta, self.fs, self.qs)
         return compare_signals(run.t, run.q, q, "q"), compare_signals(run.t, run.u, u, "u")
 
 
 class ClosedLoopRun:
-    """A recording, and all that is needed to repeat it in simulation; arguments as in `output_error`.
+    """A recording and everything that is needed to repeat it in simulation; the arguments are those of `output_error`.
 
-    Attributes: t (m,), q, u (m, 3), the reference r (m, 3, 3), the pose at the start (3,), period, s.
+    Attributes: t (m,) s, q (m, 3) rad, u (m, 3) PWM counts, the reference r (m, 3, 3), the pose at the start (3,) rad,
+    period, s.
     """
 
     def __init__(self, recording, controller, reference=None, *, delay=0.0, seconds=np.inf):
@@ -81,7 +84,7 @@ class ClosedLoopRun:
         self.late = round(number("delay", delay, ">= 0", unit="s") / self.period)
 
     def simulate(self, theta, fs=None, qs=None, *, step=0.001):
-        """q and u (PWM), (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
+        """Return q and u (PWM), (m, 3) each, of the loop with this model; fs, qs (3,): breakaway and Stribeck speed."""
         plant = make_plant(theta, unit="PWM", g=STANDARD_GRAVITY)
         plant.numbers[LIMIT : LIMIT + 3] = 255.0
         if fs is not None:
@@ -97,18 +100,20 @@ class ClosedLoopRun:
 def output_error(
     estimate, recording, controller, reference=None, *, delay=0.02, l2=None, seconds=30, iterations=12, progress=True
 ):
-    """Refine an estimate: least squares on the q and u of the simulated closed loop.
+    """Refine an estimate by least squares on the q and u of the simulated closed loop.
 
     Nothing is differentiated, and noise in the angles does no harm: the model is driven by the same controller on the
-    same reference from the same start. It may stick, so that breakaway friction fs and the Stribeck speed qs can be
-    found, which no linear theta has (the thesis's closing complaint). Inertial and friction terms stay >= 0, fs >= fc.
+    same reference from the same start. The simulated arm may stick, so that breakaway friction fs and the Stribeck
+    speed qs can be found, which no linear theta has (the thesis's closing complaint). Inertial and friction terms stay
+    >= 0, and fs >= fc.
 
     Args:
-        estimate: Estimate or theta (3, 20) to start from: `identify`. recording; reference: its motion (None: as
-        recorded, differentiated); controller: of the run, a compiled one such as PID. delay: s, to whole periods.
-        l2: m, keeps theta6 = l2 theta4. seconds: s that are used. iterations: at most. progress: show a bar.
+        estimate: Estimate or theta (3, 20) to start from, as `identify` gives it. recording; reference: its motion
+        (None: as recorded, differentiated); controller: that of the run, a compiled one such as PID. delay: s, rounded
+        to whole periods. l2: m, keeps theta6 = l2 theta4. seconds: how much of the recording is used, s. iterations: at
+        most. progress: whether a bar is shown.
 
-    Returns: OutputError. What is left at a bound (0; qs 0.005 and 0.5 rad/s) is named, its error is inf. Raises
+    Returns: OutputError. A value left at a bound (0; for qs 0.005 and 0.5 rad/s) is named, and its error is inf. Raises
     InputError on bad arguments; IdentificationError if the first model's loop runs away.
     """
     theta, _ = as_theta(getattr(estimate, "theta", estimate))

@@ -39,7 +39,7 @@ COLUMNS = {"rigid": [k for k in range(20) if NAMES[k] not in ONLY_THESIS], "thes
 
 
 def metres(name, value):
-    """`value` as a float > 0. Raises InputError, also for a length beyond any arm's."""
+    """Return `value` as a float > 0. Raises InputError, also for a length beyond that of any arm."""
     if number(name, value, "> 0", unit="m") > 10:
         raise InputError(f"{name} = {value} m is longer than 10 m: is it in millimetres? Give metres")
     return float(value)

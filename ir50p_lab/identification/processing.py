@@ -18,14 +18,14 @@ _TRIM = 2.0  # time constants 1/(2 pi cutoff) of the filter: cut off by default 
 
 @dataclass(frozen=True)
 class Motion:
-    """A recording made ready for a regression; k joints (a single joint: k = 1 and arrays (m, 1)).
+    """A recording prepared for a regression, with k joints (for a single joint k = 1, and the arrays are (m, 1)).
 
     ============= ======== ============================================================================
     t             (m,)     s
     q, qd, qdd    (m, k)   rad, rad/s, rad/s^2
     u             (m, k)   command or torque that belongs to these instants, in its own unit
     use           (m, k)   bool: whether the sample of that joint is to be used (False: too near to zero speed)
-    segment       (m,)     int: which run without a gap
+    segment       (m,)     int: number of the stretch without a gap
     rate_hz       float    samples per s
     ============= ======== ============================================================================
     """
@@ -44,12 +44,12 @@ class Motion:
 
 
 def causal_derivatives(q, rate_hz, *, cutoff_hz=3.0):
-    """Derivatives as a running loop can take them (thesis): a first-order low pass, then two backward differences.
+    """Return derivatives as a running loop can take them (thesis): first-order low pass, two backward differences.
 
         q_f[k] = filter of q,    qd[k] = (q_f[k] - q_f[k-1]) rate,    qdd[k] = (qd[k] - qd[k-1]) rate
 
-    The angle comes 1/(2 pi cutoff) late (53 ms at 3 Hz), the velocity half a period more, the acceleration a whole
-    one; a u that is not late belongs to another instant. The filter starts settled on the first sample.
+    The angle lags by 1/(2 pi cutoff) (53 ms at 3 Hz), the velocity by half a period more, the acceleration by a whole
+    one; a u that does not lag belongs to another instant. The filter starts settled on the first sample.
 
     Args: q: (n,) or (n, k) rad, evenly sampled; rate_hz: samples per s; cutoff_hz: Hz, below rate_hz/2.
     Returns: q, qd, qdd like q; the first qd and the first two qdd are 0. Raises InputError as `low_pass` does.
@@ -60,13 +60,13 @@ def causal_derivatives(q, rate_hz, *, cutoff_hz=3.0):
 
 
 def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=_ORDER):
-    """Without lag, for finished records: a Butterworth filter forward and backward, then central differences.
+    """Return derivatives without lag, for finished records: filtered forward and backward, then central differences.
 
         qd[k] = (q[k+1] - q[k-1]) rate/2,    qdd[k] = (q[k+1] - 2 q[k] + q[k-1]) rate^2
 
-    Args: q: (n,) or (n, k) rad, evenly sampled; rate_hz: samples per s; cutoff_hz: Hz, below rate_hz/2, or None for
-    no filter; order: 1..8 (twice applied). Returns: q, qd, qdd like q; at the two ends the neighbour's derivatives.
-    Raises InputError as `low_pass` does.
+    Args: q: (n,) or (n, k) rad, evenly sampled; rate_hz: samples per s; cutoff_hz: of the Butterworth filter, Hz, below
+    rate_hz/2, or None for no filter; order: 1..8 (applied twice). Returns: q, qd, qdd like q; the first and the last
+    sample have their neighbour's derivatives. Raises InputError as `low_pass` does.
     """
     q = np.array(q, dtype=float) if cutoff_hz is None else low_pass(q, cutoff_hz, rate_hz, order=order, kind=BOTH)
     if len(q) < 3:
@@ -79,28 +79,28 @@ def central_derivatives(q, rate_hz, *, cutoff_hz=1.5, order=_ORDER):
 def process(
     recording, q=None, u=None, *, derivatives=BOTH, cutoff_hz=1.5, filter_u=False, delay=0, held=True, slow=0, trim=None
 ):
-    """Make a recording ready for a regression.
+    """Prepare a recording for a regression.
 
         for name, options in {"thesis": {"derivatives": "causal", "cutoff_hz": 3}, "zero-phase": {}}.items():
             motion = process(recording, **options)
 
-    What happens, in this order: the record is split where a step of time is above 3.5 times the usual ones (nine in ten
-    of them); uneven samples are put on an even grid of the median period (cubic spline for q); q is filtered and
-    differentiated; u is taken at the instant it acted; the ends, where a filter has only one side, are cut off; samples
-    near zero speed are marked.
+    What happens, in this order: the record is split where a time step is longer than 3.5 times the usual ones (nine in
+    ten of them); uneven samples are put on an even grid of the median period (cubic spline for q); q is filtered and
+    differentiated; u is taken at the instant when it acted; the ends, where a filter has only one side, are cut off;
+    samples near zero speed are marked.
 
     Args:
-        recording: anything with t (n,), q (n, k) and u (n, k), as `Recording`; or t itself, then q and u as arrays,
-            (n,) or (n, k).
+        recording: anything with t (n,), q (n, k) and u (n, k), such as a `Recording`; or t itself, followed by q and u
+            as arrays, (n,) or (n, k).
         derivatives: "zero-phase" (`central_derivatives`) or "causal" (`causal_derivatives`).
-        cutoff_hz: of the low pass, of order 4 for "zero-phase", which may be None, and 1 for "causal".
-        filter_u: pass u through the same filter as q.
-        delay: s from a sample to the moment its u acts (notebook 11 measures it).
-        held: True: u is held from its sample to the next, as a bench does; what then acts around the instant t_k is the
+        cutoff_hz: of the low pass. It is of order 4 for "zero-phase", where cutoff_hz may be None, and 1 for "causal".
+        filter_u: whether u passes through the same filter as q.
+        delay: s from a sample to the moment when its u acts (notebook 11 measures it).
+        held: True: u is held from its sample to the next, as a bench does; what acts around the instant t_k is then the
             mean of u_k-1 and u_k. False: u is a measurement at t_k. "causal" takes u as it stands, as the thesis does,
-            shifted by the delay only.
+            only shifted by the delay.
         slow: rad/s; below it sgn(qd) is noise and a joint may stick: `use` is False there.
-        trim: s cut off at both ends of each run without a gap; default 2/(2 pi cutoff_hz).
+        trim: s cut off at both ends of each stretch without a gap; default 2/(2 pi cutoff_hz).
 
     Returns: Motion. Raises: InputError on bad arguments, NaN, or times that do not increase; IdentificationError if
     nothing is left.

@@ -1,4 +1,4 @@
-"""Whether a recording of a joint can be believed: meaningless data are refused, lesser flaws are warned of."""
+"""Can a recording of a joint be believed? Meaningless data are refused, and smaller flaws become warnings."""
 
 import math
 from itertools import pairwise
@@ -41,27 +41,27 @@ _CONTRADICT = 3.0  # standard errors: if two recordings differ by more, and by 5
 
 
 class Warnings(list):
-    """A list of sentences. `refuse` raises IdentificationError with all of them; if `anyway`, it only adds its own."""
+    """A list of sentences. `refuse` raises IdentificationError with all of them; with `anyway` it only adds its own."""
 
     def __init__(self, anyway=False, who=""):
         self.anyway, self.who = anyway, who
 
     def add(self, sentence):
-        """Another warning."""
+        """Add a warning, preceded by whom it is about."""
         self.append(self.who + sentence)
 
     def refuse(self, sentence):
-        """Refuse data that make the numbers meaningless."""
+        """Refuse data that would make the numbers meaningless; with `anyway` only add a warning."""
         if not self.anyway:
             raise IdentificationError(" Also: ".join([f"{self.who}{sentence} (anyway=True goes on)", *self]))
         self.add(f"went on anyway: {sentence}")
 
 
 def at_bounds(names, x, low, high, room=0.0):
-    """Tell which values stand at a bound of their search: they are not a measurement, their error is infinite.
+    """Tell which values stand at a bound of their search: they are not a measurement, and their error is infinite.
 
-    Args: names (p); x (p,); low, high: numbers or (p,); room: what is nearer to a bound than this stands at it.
-    Returns: sentences, none or one, and (p,) bool: where it is so.
+    Args: names (p); x (p,); low, high: numbers or (p,); room: a value nearer to a bound than this stands at it.
+    Returns: a list with one sentence or none, and (p,) bool: which values they are.
     """
     bounds = np.where(x - low < high - x, low, high)
     at = np.abs(x - bounds) <= room
@@ -71,9 +71,10 @@ def at_bounds(names, x, low, high, room=0.0):
 
 
 def check_signals(warned, t, q, u, turns=TURNS):
-    """Check q (n,) and u (n,) at the times t (n,) before any model is fitted. Returns (n,) bool: where q is new.
+    """Check q (n,) and u (n,) at the times t (n,) before any model is fitted.
 
     turns: rad; a q that spans more may be in degrees.
+    Returns: (n,) bool, where q is new (a slow sensor repeats its value).
     """
     if len(t) < FEWEST:
         warned.refuse(f"{len(t)} samples are too short a record; record {FEWEST} or more, over several reversals")
@@ -230,9 +231,9 @@ def _is_cut_off(t, x, begin, end):
 
 
 def check_outliers(warned, name, t, x, remedy="leave these samples out", told=()):
-    """Warn of samples of x (n,) that are far from both neighbours, which agree. Returns their indices without `told`.
+    """Warn of samples of x (n,) far from both neighbours, which agree; return their indices, without those in `told`.
 
-    Such are lost counts and bad bytes. Torque ripple is not: there all neighbours are far from each other.
+    Lost counts and bad bytes look like this. Torque ripple does not: there all neighbours are far from each other.
     """
     from scipy.ndimage import median_filter
 
@@ -249,7 +250,7 @@ def check_outliers(warned, name, t, x, remedy="leave these samples out", told=()
 
 
 def check_measured_speed(warned, t, q, qd):
-    """Warn of a qd (n,) that is not the rate of change of q (n,): another unit, or another joint."""
+    """Warn if qd (n,) is not the rate of change of q (n,): it may have another unit, or belong to another joint."""
     near = np.diff(t) < 1.5 * sampling_period(t)  # not across gaps
     rate, speed = (np.diff(q) / np.diff(t))[near], ((qd[1:] + qd[:-1]) / 2)[near]
     factor = float(rate @ speed / max(speed @ speed, 1e-300))
@@ -258,12 +259,12 @@ def check_measured_speed(warned, t, q, qd):
 
 
 def check_clipped_drive(warned, found):
-    """Refuse a u that was cut off in the recording only, or of which only the direction was recorded.
+    """Refuse a u that was cut off only in the recording, or of which only the direction was recorded.
 
     A drive that really saturates, or is switched, is fine: its motion needs no more than what was recorded. The model
-    is fitted again with a delay of u, and then with a column for the samples at each limit too: its parameter is what
-    the motion needs beyond that limit (`excess`). Where u is at its limits very often, these columns are nearly u
-    itself; there the residual of the first fit decides (`missed`).
+    is fitted again with a delay of u, and then with a column for the samples at each limit as well, whose parameter is
+    what the motion needs beyond that limit (`excess`). If u is at its limits very often, these columns are nearly u
+    itself; then the residual of the first fit decides (`missed`).
     """
     late = np.column_stack([found.A, found.slope, np.gradient(found.slope)])
     missed = least_squares(late, found.y, tolerance=1e-3).rms / np.std(found.y)
@@ -283,11 +284,12 @@ def check_clipped_drive(warned, found):
 
 
 def without_sign(found, with_speed):
-    """A sentence if u, or the speed, was recorded as a size without its sign and the other's sign explains it; else "".
+    """Return a sentence if u, or the speed, was recorded without its sign and the other's sign explains it; else "".
 
     with_speed: whether qd was measured, and is what lacks its sign.
 
-    A current sensor gives such a u, PWM counts beside a direction pin do, and one channel of an encoder such a q.
+    A current sensor gives such a u, and so do PWM counts with a separate direction pin; one channel of an encoder gives
+    such a q.
     """
     one_sided = [np.mean(x > 0) > _ONE_SIDED or np.mean(x < 0) > _ONE_SIDED for x in (found.y, found.v)]
     if one_sided[0] == one_sided[1]:
@@ -307,9 +309,10 @@ def without_sign(found, with_speed):
 
 
 def check_contradiction(warned, recordings, fit, least):
-    """Warn of recordings that disagree. fit: gives the fit of one recording; least: {parameter: difference to ignore}.
+    """Warn of recordings that disagree.
 
-    Of three or more, the odd one is the one that differs most from all others, in standard errors.
+    fit: returns the fit of one recording; least: {parameter: difference to ignore}. Of three or more, the odd one is
+    the one that differs most from all others, in standard errors.
     """
     found = {}
     for k, one in enumerate(recordings, 1):

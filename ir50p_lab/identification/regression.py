@@ -42,20 +42,19 @@ class LeastSquares:
 
 
 def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
-    """Least squares A x = y by QR, for any regressor matrix, with standard errors for residuals in time order.
+    """Solve A x = y by least squares (QR), for any regressor matrix and residuals that may be correlated in time.
 
         found = least_squares(np.column_stack([qd, np.sign(qd)]), torque, names=("viscous", "Coulomb"))
 
     Args:
-        A: (n, p), or (n, k, p) for k equations a sample; y: (n,) or (n, k). Time first. Masked samples are left out.
+        A: (n, p), or (n, k, p) for k equations per sample; y: (n,) or (n, k). Time first. Masked samples are left out.
         names: of the p columns.
-        tolerance: share of its length; a column that is a combination of those before it to within that is left
-            out.
+        tolerance: a column is left out if it is a combination of those before it to within this share of its length.
 
     Returns: LeastSquares. Its errors hold for residuals that are correlated in time and of unequal size
-    (heteroscedasticity and autocorrelation consistent, `long_run_sum`). They leave out noise in A, which biases x.
-    Raises: InputError on shapes and numbers that are not finite; IdentificationError if A is zero, or has fewer than
-    twice as many rows as columns.
+    (heteroscedasticity and autocorrelation consistent, `long_run_sum`). They do not include noise in A, which biases x.
+    Raises: InputError on wrong shapes and numbers that are not finite; IdentificationError if A is zero, or has fewer
+    than twice as many rows as columns.
     """
     given = A, y
     A, y = numbers("A", A), numbers("y", y)
@@ -88,13 +87,13 @@ def least_squares(A, y, *, names=None, tolerance=DEPENDENT):
 
 
 class Problem:
-    """Equations y = A x + noise made ready: columns scaled to length 1, dependent ones left out, A = Q R.
+    """Equations y = A x + noise, prepared: columns scaled to length 1, dependent ones left out, A = Q R.
 
-    Args: A (N, p), y (N,), names of the columns; n: number of samples, N/n equations each, time first; who: for
+    Args: A (N, p), y (N,), names of the columns; n: number of samples, with N/n equations each, time first; who: begins
     sentences, "joint 2: " or "". Raises IdentificationError for too few equations, and if A is zero.
 
     Attributes: Q (N, k), R, R_inverse (k, k), Qty (k,); names and `scale` (lengths) of the columns `kept` (indices);
-    the names `lost`; indices of those left `at_bound`; condition of A, its columns of length 1; notes: sentences
+    the names `lost`; indices of those left `at_bound`; condition of A with columns of length 1; notes: sentences
     about what the data cannot tell.
     """
 
@@ -127,7 +126,9 @@ class Problem:
         return f"{self.who}{lost} cannot be told apart from {', '.join(name for name, _ in parts)}: {stands}"
 
     def estimate(self, z):
-        """Parameters of the columns kept, (k,), and their covariance (k, k), for z = R x with columns of length 1."""
+        """Return the kept columns' parameters (k,) and their covariance (k, k), for z = R x with columns of length
+        1.
+        """
         residuals = self.y - self.Q @ z
         N, k = self.Q.shape
         scores = (self.Q * residuals[:, None]).reshape(self.n, -1, k).sum(axis=1)
@@ -139,10 +140,10 @@ class Problem:
 
 
 def independent_columns(R, tolerance=DEPENDENT):
-    """Columns of R, of length 1 or 0, that are no combination of those before them; and weights that give the others.
+    """Find the columns of R, of length 1 or 0, that are no combination of those before them.
 
     A column is a combination if its distance from the space of the others is at most `tolerance`. Returns: indices of
-    the k columns kept; weights (k, p): R = R[:, kept] @ weights.
+    the k columns kept; weights (k, p) that give all columns from them: R = R[:, kept] @ weights.
     """
     kept = list(range(R.shape[1]))
     while (own := np.abs(np.diag(np.linalg.qr(R[:, kept], mode="r")))).min() <= tolerance:
@@ -152,13 +153,15 @@ def independent_columns(R, tolerance=DEPENDENT):
 
 
 def long_run_sum(scores, residuals):
-    """Covariance (p, p) of the sum over time of correlated `scores` (n, p), columns of A times `residuals` (n, k).
+    """Return the covariance (p, p) of the sum over time of correlated `scores`.
 
-    Mean of the first B squared cosine coefficients ('equal-weighted cosine', Lazarus, Lewis, Stock and Watson 2018):
-    the error of an estimate comes from noise at the frequencies next to zero. B = 0.4 n^(2/3), but so few that the
-    spectrum of the residuals is flat among them: no more than half of those that hold half of their power (a quarter of
-    the cut-off for noise that was low-passed). Few coefficients make the errors themselves uncertain: they are widened
-    by Student's t with B degrees of freedom.
+    scores: (n, p), the columns of A times the residuals; residuals: (n, k).
+
+    It is the mean of the first B squared cosine coefficients ('equal-weighted cosine', Lazarus, Lewis, Stock and Watson
+    2018), because the error of an estimate comes from noise at the frequencies next to zero. B = 0.4 n^(2/3), but so
+    few that the spectrum of the residuals is flat among them: at most half of those that hold half of their power (a
+    quarter of the cut-off for noise that was low-passed). Few coefficients make the errors themselves uncertain, so
+    they are widened by Student's t with B degrees of freedom.
     """
     B = int(np.clip(independent_samples(residuals) // 4, 4, max(4, 0.4 * len(scores) ** (2 / 3))))
     coefficients = fft.dct(scores, axis=0)[1 : B + 1]
@@ -167,6 +170,9 @@ def long_run_sum(scores, residuals):
 
 
 def independent_samples(residuals):
-    """Independent samples in residuals (n, k): twice the number of cosine coefficients with half of their power."""
+    """Return the number of independent samples in residuals (n, k).
+
+    It is twice the number of cosine coefficients that hold half of their power.
+    """
     power = np.cumsum(np.sum(fft.dct(residuals, axis=0) ** 2, axis=1))
     return max(2 * np.searchsorted(power, power[-1] / 2), 1)

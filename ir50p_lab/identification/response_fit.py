@@ -37,7 +37,7 @@ class FOPDT:
     warnings                   tuple of str: doubts about this fit
     ========================== ==================================================== ==========
 
-    By hand, FOPDT(K=, T=, L=) is enough. Raises InputError if K is 0 or T is not > 0 or L is not >= 0.
+    To make one by hand, FOPDT(K=, T=, L=) is enough. Raises InputError if K is 0, T is not > 0 or L is not >= 0.
     """
 
     K: float
@@ -56,7 +56,7 @@ class FOPDT:
             raise InputError(f"K, T, L = {self.K}, {self.T}, {self.L}: give finite K != 0, T > 0 s and L >= 0 s")
 
     def response(self, t, u, *, u_before=None):
-        """Output of the model for the input u(t), exact between the samples.
+        """Return the output of the model for the input u(t), exact between the samples.
 
         Args: t: (n,) s, increasing; u: (n,), u[k] acts from t[k] to t[k + 1]; u_before: input at rest (default u[0]).
         Returns: (n,), in units of y. Raises InputError on wrong shapes or numbers that are not finite.
@@ -70,22 +70,23 @@ class FOPDT:
 def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     """Fit K, T and L of a first-order plus dead time model to a recording    (2.21)
 
-    T dy/dt + y = y0 + K [u(t - L) - u_before], solved exactly for an input held between samples (zero-order hold), with
-    any number of steps, sampled evenly or not; y starts at rest. After one step of height h this is
-    y = y0 + K h (1 - exp(-(t - t_step - L)/T)). Least squares over all samples, from the best points of a grid.
+    T dy/dt + y = y0 + K [u(t - L) - u_before] is solved exactly for an input held between samples (zero-order hold),
+    with any number of steps, sampled evenly or not; y starts at rest. After one step of height h this is
+    y = y0 + K h (1 - exp(-(t - t_step - L)/T)). The fit is least squares over all samples, from the best points of a
+    grid.
 
     Standard errors come from the Jacobian and the residuals. Neighbouring residuals that are correlated (r > 0)
-    carry less information than their number: then the errors are widened by sqrt((1 + r)/(1 - r)). They are also
-    widened by how far K, T and L move if a linear drift of y, or a y that was not yet at rest, is fitted as well, by
-    the jitter of an uneven clock and by half a step of a coarse y. In white noise two standard errors enclose the
-    truth 95 times in 100. Other errors of the model are not in them.
+    carry less information than their number suggests: then the errors are widened by sqrt((1 + r)/(1 - r)). They are
+    also widened by how far K, T and L move if a linear drift of y, or a y that was not yet at rest, is fitted as well,
+    by the jitter of an uneven clock, and by half a step of a coarse y. In white noise two standard errors enclose the
+    truth 95 times in 100. Other errors of the model are not included.
 
     Args:
         t: (n,) s, increasing. u: (n,), input; u[k] acts from t[k] to t[k + 1]. y: (n,), output, any unit.
         u_before: input at rest before t[0]; give it if u has its new value already in the first sample.
         anyway: go on where the data are refused and a model can be had; the reason is then in `warnings`.
 
-    Returns: FOPDT. K is negative where y goes down after a step up. `warnings` tells of a response that is not over
+    Returns: FOPDT. K is negative if y goes down after a step up. `warnings` tells of a response that is not over
     when the record ends (T is longer), of T or L below the sampling period (its error is then inf or a period), of
     an L at a bound of the search, 0 or nearly the whole record (its error is then inf), of
     correlated residuals, drift, another shape, times that look like milliseconds, and single outliers of u and y (those
@@ -94,7 +95,7 @@ def fit_fopdt(t, u, y, *, u_before=None, anyway=False):
     Raises:
         IdentificationError: u never changes; y does not change or does not follow u; fewer than 8 samples after the
         change; the response has quite another shape (it swings, say); y runs on like a ramp (an integrating joint: K
-        and T have no value) or ever faster. Each says what to do next.
+        and T have no value) or ever faster. Each message says what to do next.
         InputError: NaN, shapes or lengths that do not fit, time that does not increase.
     """
     record = _StepRecord(t, u, y, u_before, Warnings(anyway))

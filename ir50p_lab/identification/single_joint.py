@@ -66,10 +66,10 @@ _WIDENS = {  # fit with one effect more that may be there: the parameters whose 
 class JointFit:
     """u = inertia qdd + viscous qd + coulomb sgn(qd) + offset [+ gravity_sin sin q + gravity_cos cos q].
 
-    u in its own unit (N m, A, PWM counts...). Each parameter has a standard error ..._stderr: inf if the data do not
-    determine it (the value is then 0), nan if it was not asked for. rms: of the residual, unit of u; fit:
+    u is in its own unit (N m, A, PWM counts...). Each parameter has a standard error ..._stderr: inf if the data do not
+    determine it (the value is then 0), nan if it was not asked for. rms: of the residual, in the unit of u; fit:
     100 (1 - |u - u_model|/|u - mean u|) %; cutoff_hz: of the low pass on q and u, inf for none; held: whether u was
-    taken as held from its sample to the next; samples: used in the regression; warnings: tuple of str.
+    taken as held from its sample to the next; samples: how many the regression used; warnings: tuple of str.
     """
 
     inertia: float = 0.0
@@ -95,28 +95,28 @@ class JointFit:
 def fit_joint(
     t, q=None, u=None, *, qd=None, terms=TERMS[:4], cutoff_hz=None, delay=0.0, held=None, slow=None, anyway=False
 ):
-    """Inertia, viscous and Coulomb friction and offset of one joint from a recording of it    (2.48, one joint)
+    """Fit inertia, viscous and Coulomb friction and offset of one joint to a recording of it    (2.48, one joint)
 
         u = inertia qdd + viscous qd + coulomb sgn(qd) + offset
 
-    q, u and sgn(qd) pass the same zero-phase low pass: the equation stays true, only noise is lost. Its cut-off is five
-    times the frequency of the motion, or lower where q is noisy; above it flexibility and backlash make a rigid model
-    wrong. Samples of a joint at rest are left out (there u may be anything up to the breakaway friction). Standard
-    errors hold for residuals that are correlated in time. They are widened by how far other fits of the same data move
-    a parameter: with half the cut-off, twice the least speed, a u that acts half a period earlier or later, a flexible
-    joint, friction that is not linear in the speed, a force that depends on q, a dead zone of the amplifier.
+    q, u and sgn(qd) pass through the same zero-phase low pass: the equation stays true, and only noise is lost. Its
+    cut-off is five times the frequency of the motion, or lower if q is noisy; above it flexibility and backlash make a
+    rigid model wrong. Samples of a joint at rest are left out (there u may be anything up to the breakaway friction).
+    Standard errors hold for residuals that are correlated in time. They are widened by how far other fits of the same
+    data move a parameter: with half the cut-off, twice the least speed, a u that acts half a period earlier or later, a
+    flexible joint, friction that is not linear in the speed, a force that depends on q, a dead zone of the amplifier.
 
     Args:
         t: (n,) s, at any rate, with gaps if need be; or a recording of one joint (t, q, u); or a list of recordings or
             of tuples (t, q, u) or (t, q, u, qd): each is fitted and compared with the others, then all are fitted
-            together. One that contradicts the others is named, and the errors reach to what each says.
+            together. One that contradicts the others is named, and the errors are widened to cover what each says.
         q: (n,) rad; None for a wheel of which only qd was measured: its integral is taken. u: (n,), torque, current or
             command, any unit. Arrays, masked arrays, pandas Series.
-        qd: (n,) rad/s, if it was measured too: then q is not differentiated.
+        qd: (n,) rad/s, if it was measured, too: then q is not differentiated.
         terms: of "inertia", "viscous", "coulomb", "offset", "gravity".
         cutoff_hz: of the low pass; inf: none, the plain least squares of a friction sweep (with qd, without inertia).
-        delay: s from a sample to the moment its u acts.
-        held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: what
+        delay: s from a sample to the moment when its u acts.
+        held: True: u is held from its sample to the next; False: it is a measurement at the instant; None: whichever
             explains the data better.
         slow: rad/s; slower samples are left out, by default those below a tenth of the rms speed.
         anyway: go on where the data are refused; the reason is then in `warnings`.

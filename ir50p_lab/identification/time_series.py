@@ -7,11 +7,11 @@ from ir50p_lab.inputs import first_not_finite, numbers
 
 
 def columns_of(recording, q=None, u=None):
-    """Return t (n,), q (n, k) and u (n, k) as float arrays; t `without_rounding`.
+    """Return t (n,), q (n, k) and u (n, k) as float arrays; t has passed through `without_rounding`.
 
-    recording: anything with t, q and u (a Recording, a pandas table), then q and u must be left out; or the times
-    themselves, with q and u as arrays, lists or pandas Series. Masked samples are left out. Raises InputError on shapes
-    that do not fit, NaN, or times that do not increase, naming the first.
+    recording: anything with t, q and u (a Recording, a pandas table), in which case q and u must be left out; or the
+    times themselves, with q and u as arrays, lists or pandas Series. Masked samples are left out. Raises InputError on
+    shapes that do not fit, NaN, or times that do not increase, naming the first.
     """
     if (q is None) != (u is None) or (q is not None and hasattr(recording, "q")):
         raise InputError("give a recording, or t, q and u as arrays: neither both nor a part")
@@ -25,9 +25,10 @@ def columns_of(recording, q=None, u=None):
 
 
 def same_samples(given, most=2):
-    """Float arrays of the columns `given` (name: values), the first (n,) and increasing, the others (n,) or (n, k).
+    """Return the columns `given` (name: values) as float arrays, the first (n,) and increasing, others (n,) or (n, k).
 
-    Masked samples are left out. Dates and time differences become seconds. most: dimensions. Raises InputError.
+    Masked samples are left out. Dates and time differences become seconds. most: how many dimensions an array may have.
+    Raises InputError.
     """
     if (times := np.asarray(given["t"])).dtype.kind in "mM":
         given = {**given, "t": (times - times[:1]) / np.timedelta64(1, "s")}
@@ -52,7 +53,10 @@ def same_samples(given, most=2):
 
 
 def sampling_period(t):
-    """Sampling period of times (n,) with gaps and jitter, s: mean of the steps, each as 1, 2 or 3 periods; no gaps."""
+    """Return the sampling period of times (n,) with gaps and jitter, s.
+
+    It is the mean of the steps, each counted as 1, 2 or 3 periods; gaps do not count.
+    """
     dt = np.diff(t)
     steps = np.rint(dt / np.median(dt))
     near = steps <= 3
@@ -60,10 +64,10 @@ def sampling_period(t):
 
 
 def without_rounding(t):
-    """Times (n,) s of an even clock that were rounded to a coarse tick (1 ms, say), put back onto even steps.
+    """Return times (n,) s of an even clock that were rounded to a coarse tick (1 ms, say), put back onto even steps.
 
-    Only where every time lies within 3/4 of a tick of the even steps (a gap is a whole number of them): then these do
-    not contradict what was recorded. Otherwise the times are returned as they are.
+    This is done only if every time lies within 3/4 of a tick of the even steps (a gap is a whole number of them): then
+    they do not contradict what was recorded. Otherwise the times are returned as they are.
     """
     dt = np.diff(t)
     period = sampling_period(t)
@@ -78,9 +82,9 @@ def without_rounding(t):
 
 
 def quantum_of(x):
-    """Step of a coarse sensor or converter: the least difference between values of x (n,); 0 if there is none.
+    """Return the step of a coarse sensor or converter: the least difference between values of x (n,), else 0.
 
-    There is one if values repeat, or if all differences are whole steps.
+    There is a step if values repeat, or if all differences are whole steps.
     """
     values = np.unique(x)
     steps = np.diff(values)
@@ -92,6 +96,6 @@ def quantum_of(x):
 
 
 def runs(t, max_gap):
-    """[(first, last + 1), ...]: the stretches of t (n,) whose steps are at most max_gap s."""
+    """Return [(first, last + 1), ...]: the stretches of t (n,) in which no step is longer than max_gap s."""
     edges = np.flatnonzero(np.diff(t) > max_gap) + 1
     return list(zip(np.r_[0, edges].tolist(), np.r_[edges, len(t)].tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""How good a model is on data it has not seen, as Table 4.4 on raw PWM; and whether its residuals are white."""
+"""How good a model is on data it has not seen, as in Table 4.4 on raw PWM; and whether its residuals are white."""
 
 from collections import namedtuple
 from dataclasses import dataclass
@@ -37,15 +37,15 @@ class Validation:
 
     @property
     def residuals(self):
-        """measured - predicted, (n, 3)."""
+        """The residuals measured - predicted, (n, 3)."""
         return self.measured - self.predicted
 
 
 def nrmse_fit(measured, predicted):
-    """RMS error and fit of each column    (Table 4.4).
+    """Return the rms error and the fit of each column    (Table 4.4).
 
-    fit = 100 (1 - |y - y_p|/|y - mean y|): 100 is perfect, 0 no better than the mean, below 0 worse than that. It is
-    not R^2: a fit of 70 % leaves 30 % of the amplitude, which is 9 % of the variance.
+    fit = 100 (1 - |y - y_p|/|y - mean y|): 100 is perfect, 0 is no better than the mean, and below 0 is worse than
+    that. It is not R^2: a fit of 70 % leaves 30 % of the amplitude, which is 9 % of the variance.
 
     Args: measured, predicted: (n,) or (n, k). Returns: (rms, fit), numbers or (k,). Raises InputError on shapes that
     differ, numbers that are not finite, or a measured column that never changes.
@@ -69,7 +69,7 @@ def validate(estimate, recording, q=None, u=None, *, derivatives=BOTH, cutoff_hz
     """Predict the u of another recording from its angles, one sample at a time    (4.5), Table 4.4.
 
     The u of the recording is taken raw, as it was sent. The prediction is made from q, qd and qdd as `process` finds
-    them, and read at the time at which each u acted: its sample + delay (+ half a period while it is held).
+    them, and read at the time when each u acted: its sample + delay (+ half a period while it is held).
 
     Args: estimate: Estimate or theta (3, 20); recording, or t, q, u; derivatives, cutoff_hz, delay, held: as in
     `process`; sign: as in `regressor`.
@@ -89,7 +89,7 @@ def validate(estimate, recording, q=None, u=None, *, derivatives=BOTH, cutoff_hz
 
 
 def compare_signals(t, measured, predicted, of):
-    """Validation of "u" or "q", (n, 3) each."""
+    """Return the Validation of "u" or "q" (`of`); t (n,) s, measured and predicted (n, 3)."""
     rms, fit = nrmse_fit(measured, predicted)
     return Validation(rms=rms, fit=fit, t=t, measured=measured, predicted=predicted, of=of)
 
@@ -97,16 +97,16 @@ def compare_signals(t, measured, predicted, of):
 class Whiteness(namedtuple("Whiteness", "lags correlation bound")):
     """Autocorrelation of residuals, column by column.
 
-    lags (m,) samples; correlation (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
-    if the residuals are white: what a good model leaves is noise, which no earlier sample predicts.
+    lags: (m,) samples; correlation: (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
+    if the residuals are white. What a good model leaves is noise, which no earlier sample predicts.
     """
 
 
 def whiteness(residuals):
-    """Autocorrelation r_m = sum e_k e_k+m/sum e_k^2 of residuals, for the first min(50, n/5) lags.
+    """Return the autocorrelation r_m = sum e_k e_k+m/sum e_k^2 of residuals, for the first min(50, n/5) lags.
 
-    Args: residuals: (n,) or (n, k), evenly sampled, the mean is taken out. Returns: Whiteness. Raises InputError for
-    fewer than 20 samples, numbers that are not finite, constant residuals.
+    Args: residuals: (n,) or (n, k), evenly sampled; their mean is removed. Returns: Whiteness. Raises InputError for
+    fewer than 20 samples, numbers that are not finite, and constant residuals.
     """
     e = finite("residuals", residuals)
     e = e[:, None] if e.ndim == 1 else e

@@ -37,8 +37,8 @@ def judged(hand_in_of, arms=3, *, seeds=None, seconds=SECONDS):
     Raises InputError for what is not a hand-in.
     """
     path = hand_in(hand_in_of) if callable(hand_in_of) else Path(hand_in_of)
-    if not path.is_file():
-        raise InputError(f"'{path}' is not a file: give the one that holds `unknown_arm`")
+    if not path.is_file() or path.suffix != ".py":
+        raise InputError(f"'{path}' is not a Python file: give the one that holds `unknown_arm` (unpack a ZIP first)")
     seeds = seeds or [secrets.randbits(128) for _ in range(whole("arms", arms, 1, 1000))]
     with TemporaryDirectory() as room, ThreadPoolExecutor(os.cpu_count()) as pool:
         folder = _moved_in(path, Path(room))

@@ -49,9 +49,11 @@ def test_the_reference_finishes_on_three_arms():
     assert "complete on 3 of 3 arms" in str(day)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path):
-    with pytest.raises(InputError, match="is not a file"):
-        judged(tmp_path / "none.py")
+def test_a_file_that_is_not_there_or_not_python_is_told(tmp_path):
+    (tmp_path / "ada.zip").write_bytes(b"PK")
+    for name in ("none.py", "ada.zip"):
+        with pytest.raises(InputError, match="is not a Python file: give the one"):
+            judged(tmp_path / name)
 
 
 def notebook(text, name, **known):
