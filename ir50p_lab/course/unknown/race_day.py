@@ -11,7 +11,7 @@ FAST = 3.6  # s: a median of at most this wins
 
 @dataclass(frozen=True)
 class Raced:
-    """Of one arm: its world, with the way of the arm in it; void: why the race does not count, or ""."""
+    """Of one arm: its world, with the path of the arm in it; void: why the race does not count, or ""."""
 
     world: World
     void: str = ""

@@ -27,13 +27,13 @@ class World:
     """One unknown arm, its balls and its camera; seed: a whole number, of all of it.
 
     Attributes: given: Drawn; left: s of practice; pictures: how many may still be taken; raced; touched (3,): s at
-    which each ball was touched, nan for never; knocked (3,) bool; way: [(t, q true)] of the race; ended: how the last
+    which each ball was touched, nan for never; knocked (3,) bool; path: [(t, q true)] of the race; ended: how the last
     run did.
     """
 
     def __init__(self, seed):
         self.given, self.left, self.pictures, self.raced, self.ended = drawn(seed), PRACTICE, PICTURES, False, ""
-        self.touched, self.knocked, self.way = np.full(BALLS, np.nan), np.zeros(BALLS, dtype=bool), []
+        self.touched, self.knocked, self.path = np.full(BALLS, np.nan), np.zeros(BALLS, dtype=bool), []
         self._rng, self._run = np.random.default_rng([seed, 4]), None
 
     def answer(self, question):
@@ -117,7 +117,7 @@ class World:
                     self.ended = "all are touched"
                     break
             if race:
-                self.way.append((k * PERIOD, machine.q_true))
+                self.path.append((k * PERIOD, machine.q_true))
             else:
                 self.left = began - (k + 1) * PERIOD
             touched = int(BALLS - np.isnan(self.touched).sum())
