@@ -23,7 +23,7 @@ def claim(text, value, *, below=None, above=None, near=None, within=None, unit="
     Args: text: the claim, in words that a student understands. value: a number or an array, of which every element
     has to keep the limits. below, above: value < below, value > above. near, within: |value - near| < within. Limits
     are numbers, or arrays that fit the value. unit: of all of them, printed after the value. by: whose function made
-    the value, as `badge_of` returns it.
+    the value, as `badge_of` returns it; if that is not "yours", the sentence is printed, but nothing is claimed.
 
     If the environment variable IR50P_CLAIMS names a file, a line of JSON is added to it: the text, and how far
     each element of the value is from its limits. tests/notebooks/margins.py reads that over many units and seeds.

@@ -10,7 +10,9 @@ _WEAKEST_FIRST = ("not written yet", "the course's", "on loan", "yours")
 
 
 def badge_of(function, given=()):
-    """Return whose code a view runs: of all the functions on which it rests, the weakest in `_WEAKEST_FIRST`.
+    """Return whose code a view runs: "not written yet", "the course's", "on loan" or "yours".
+
+    Of all the functions on which the view rests, the first of these that applies to one of them is returned.
 
     function: what draws or moves the arm, or None: "the course's". What it calls is looked up in the notebook and in
     `my_robot`; a function or table in which dots still stand is "not written yet".

@@ -17,9 +17,7 @@ ABOVE_THE_BALL = np.array([0.42, -0.15, 0.09])  # m, as in 00
 
 
 def kept_path(arm):
-    """Return 07's path from rest to above the ball, and its seconds: 0.1 s more than the least that 250 counts
-    allow.
-    """
+    """Return 07's path from rest to above the ball, and its seconds: 0.1 s more than the least for 250 counts."""
     rest = rest_pose(arm)
     there = my_robot.reach(ABOVE_THE_BALL, arm.l, rest, parts(arm).limits)
 
