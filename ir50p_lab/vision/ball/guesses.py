@@ -21,7 +21,7 @@ _NEW = 0.25  # radii: if a circle differs less from an earlier one, place and si
 def guess_circles(image, colour, least_radius):
     """Return circles [(x, y, r)] px that may fit regions of a Colour in an RGB picture (h, w, 3).
 
-    Those with the longest arcs come first; least_radius: px, smaller ones are left out.
+    Those with the longest arcs come first. least_radius: px; those well below it are left out.
     """
     scale = max(1, round(max(image.shape) / _LONGER_SIDE))
     small = cv2.resize(image, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
