@@ -1,6 +1,6 @@
 """The course in a browser tab (Pyodide, a Python without threads, processes and ports): what is different there.
 
-The page's own drive keeps files, but a look at it takes 5 ms: the student's folder lies in memory, with a copy there.
+The page's own drive keeps files, but a look at it takes 5 ms. So the student's folder is in memory, with a copy there.
 """
 
 import asyncio
@@ -31,21 +31,21 @@ _KEPT = ("results/**/*", "my_robot/**/*", "progress.json")
 
 
 class NotInABrowserError(LabError, ModuleNotFoundError):
-    """What a browser tab cannot do; the message says what can."""
+    """Something that a browser tab cannot do; the message says what can."""
 
 
 def needs_more(what, module=None):
-    """Raise the error of something that a tab cannot do; module: the one that would be needed."""
+    """Raise the error for something that a tab cannot do. module: the one that would be needed."""
     said = f"A browser tab cannot do this: {what}. On your machine, 'python3 -m ir50p_lab' can."
     raise NotInABrowserError(said, name=module)
 
 
 class Lacking:
-    """Asked last for a module: fetches what can be fetched, and names what the others would have been for."""
+    """An import hook, asked last: it fetches modules that can be fetched, and says for what the others are needed."""
 
     @staticmethod
     def find_spec(name, path=None, target=None):
-        """None for a module that is merely not there."""
+        """Return None for a module that is merely not there."""
         if name in _LACKING:
             needs_more(f"{name}, which {_LACKING[name]}, is not loaded", name)
         return _fetch_package(name) if name in WHEN_NEEDED else None
@@ -94,7 +94,7 @@ def _shell():
 
 
 class Drive:
-    """The page's drive beside the student's folder in memory: other notebooks, and the next visit, read the drive."""
+    """The page's drive next to the student's folder in memory; other notebooks, and the next visit, read the drive."""
 
     def __init__(self, drive, memory):
         self.drive, self.memory = drive, memory
@@ -141,7 +141,7 @@ def _files(folder):
 
 @functools.cache
 def quick_home(drive):
-    """The student's folder in memory: equal to the drive's before each cell, and copied there after it."""
+    """Return the student's folder in memory, made equal to the drive's before each cell and copied back after it."""
     memory = Path.home() / "student"
     memory.mkdir(parents=True, exist_ok=True)
     copies = Drive(drive, memory)

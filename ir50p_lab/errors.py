@@ -42,7 +42,7 @@ class UnreachableError(LabError, ValueError):
 
 
 class IdentificationError(LabError, ValueError):
-    """Data from which the parameters asked for cannot be found: the model is wrong for them, or they say too little."""
+    """Data from which the parameters cannot be found: the model is wrong for them, or they say too little."""
 
 
 class SuspiciousArmWarning(UserWarning):
@@ -58,7 +58,7 @@ class UnstableLoopWarning(UserWarning):
 
 
 class BenchError(LabError):
-    """Something between the computer and the arm; when it is raised the drive is off, or the board about to brake."""
+    """Something between computer and arm fails; when this is raised the drive is off, or the board about to brake."""
 
 
 class PortError(BenchError):
@@ -70,7 +70,7 @@ class BoardError(BenchError):
 
 
 class BoardLostError(BenchError):
-    """The board answered before and does no longer (cable pulled), or has reset in the middle of a run."""
+    """The board answered before but no longer does (cable pulled), or has reset in the middle of a run."""
 
 
 class NotMeasuredError(BenchError):
@@ -78,11 +78,11 @@ class NotMeasuredError(BenchError):
 
 
 class RunawayError(BenchError):
-    """A joint does not do what its motor makes it do: wires swapped, a potentiometer loose or torn, or blocked."""
+    """A joint does not do what its motor makes it do: wires swapped, a potentiometer loose or torn, a joint blocked."""
 
 
 class PauseError(BenchError):
-    """The program left the arm without a command for too long in a run: it drives again only in a new one."""
+    """The program left the arm without a command for too long in a run; it can drive again only in a new run."""
 
 
 class RecordingError(LabError, ValueError):
@@ -90,7 +90,7 @@ class RecordingError(LabError, ValueError):
 
 
 class VisionError(LabError):
-    """Something about a picture, a camera or its calibration; base of the three below."""
+    """Something is wrong with a picture, a camera or its calibration; base class of the three below."""
 
 
 class ImageError(VisionError, ValueError):
@@ -98,7 +98,7 @@ class ImageError(VisionError, ValueError):
 
 
 class CameraError(VisionError):
-    """No camera where one was asked for, or it stopped answering while streaming."""
+    """There is no camera where one was asked for, or it stopped answering while streaming."""
 
 
 class CalibrationError(VisionError, ValueError):

@@ -1,8 +1,8 @@
 """Where everything of the student's is kept, and what the environment variables IR50P_* say. Standard library only.
 
-All variables are read here, in one way. Blanks and quotes around a value do not count (`set X="..."` of the Windows
-prompt keeps them); an empty one is unset. In a path, '~' is the home folder, and a relative one counts from the
-project's folder, wherever a notebook runs.
+All variables are read here, in the same manner. Blanks and quotes around a value do not count (`set X="..."` of the
+Windows prompt keeps them); an empty one counts as unset. In a path, '~' is the home folder, and a relative path counts
+from the project's folder, wherever a notebook runs.
 """
 
 import os
@@ -17,7 +17,7 @@ PROJECT = Path.cwd().parent if IN_BROWSER else Path(__file__).parents[1]  # in a
 
 
 def home():
-    """The student's folder: $IR50P_HOME, else notebooks/ of the project. It may not exist yet."""
+    """Return the student's folder: $IR50P_HOME, else notebooks/ of the project. It may not exist yet."""
     kept = PROJECT / "notebooks"
     return path_setting(VARIABLE) or (quick_home(kept) if IN_BROWSER else kept)
 
@@ -25,8 +25,8 @@ def home():
 def check_folder():
     """Raise WrongFolderError if the notebook is in another copy of the course than this package.
 
-    So it is after a folder was copied together with its .venv: its Python imports the package of the old folder, and
-    what the student writes would be kept there.
+    This happens after a folder was copied together with its .venv: its Python imports the package of the old folder,
+    and what the student writes would be kept there.
     """
     here = Path.cwd()
     copies = (
@@ -42,7 +42,7 @@ def check_folder():
 
 
 def setting(name):
-    """Text of an environment variable, "" where it is unset.
+    """Return the text of an environment variable, "" if it is unset.
 
     The paths in 'replay:FILE' (IR50P_BENCH) and 'folder:PATH' (IR50P_CAMERA) are those of `path_setting`.
     """
@@ -52,13 +52,13 @@ def setting(name):
 
 
 def path_setting(name):
-    """Path that an environment variable names, None where it is unset."""
+    """Return the Path that an environment variable names, None if it is unset."""
     text = setting(name)
     return _in_project(text) if text else None
 
 
 def read_text(path, error):
-    """Return the text of a file in UTF-8. Raises OSError, and `error` with the remedy if it has another encoding."""
+    """Return the text of a file in UTF-8. Raises OSError, and `error` with the remedy for another encoding."""
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
@@ -69,7 +69,7 @@ def read_text(path, error):
 
 
 def replace_text(path, text):
-    """Write a file in one step: a crash leaves the old or the new one, whole. Raises OSError."""
+    """Write a file in one step: a crash leaves either the old one or the new one, whole. Raises OSError."""
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".", ignore_cleanup_errors=True) as folder:
         scratch = Path(folder, path.name)
         scratch.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Checks of arguments at the public edge: a wrong shape, a wrong type or a NaN gets a sentence, not a result."""
+"""Checks of arguments at the public edge: a wrong shape, a wrong type or a NaN gets a sentence instead of a result."""
 
 import math
 
@@ -21,7 +21,7 @@ def vectors3(name, value, *, unit="rad"):
 
 
 def vector3(name, value, *, unit="rad"):
-    """`value` as a float array (3,). Raises InputError as `vectors3` does, and for many rows."""
+    """Return `value` as a float array (3,). Raises InputError as `vectors3` does, and for more than one row."""
     array = vectors3(name, value, unit=unit)
     if array.shape != (3,):
         raise InputError(f"{name} has shape {array.shape}; give three numbers, shape (3,) ({unit})")
@@ -29,7 +29,7 @@ def vector3(name, value, *, unit="rad"):
 
 
 def numbers(name, value, *, unit="its unit"):
-    """`value` as a float array of any shape. Raises InputError for what holds no real numbers, or ragged rows."""
+    """Return `value` as a float array of any shape. Raises InputError for ragged rows and what is no real number."""
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -37,7 +37,10 @@ def numbers(name, value, *, unit="its unit"):
 
 
 def number(name, value, rule="finite", *, unit="", hint=""):
-    """`value` as a float. rule: "finite", ">= 0", "> 0", or "> 0 or inf". Raises InputError, ending with `hint`."""
+    """Return `value` as a float. rule: "finite", ">= 0", "> 0", or "> 0 or inf".
+
+    Raises InputError, ending with `hint`.
+    """
     try:
         x = math.nan if isinstance(value, (str, bytes, bool)) or np.ndim(value) > 0 else float(value)
     except (TypeError, ValueError, OverflowError):
@@ -50,20 +53,20 @@ def number(name, value, rule="finite", *, unit="", hint=""):
 
 
 def whole(name, value, least, most):
-    """`value` as an int from `least` to `most`. Raises InputError."""
+    """Return `value` as an int from `least` to `most`. Raises InputError."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
         raise InputError(f"{name} = {value!r:.60}: give a whole number from {least} to {most}")
     return int(value)
 
 
 def choice(name, value, choices):
-    """`value`, one of some texts (or of True and False). Raises InputError naming them all."""
+    """Return `value`, which is one of some texts (or of True and False). Raises InputError, which names them all."""
     if not isinstance(value, (str, bool, np.bool_)) or value not in choices:
         raise InputError(f"{name} = {value!r:.60}: choose {' or '.join(map(repr, choices))}")
     return value
 
 
 def first_not_finite(array):
-    """Describe the first NaN or infinity of `array`, with its place."""
+    """Describe the first NaN or infinity in `array`, with its place."""
     place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
     return f"{array[place]} at index {place[0] if len(place) == 1 else place}"

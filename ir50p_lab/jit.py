@@ -1,10 +1,10 @@
-"""`jit`: numba's njit, with a cache on disk that notices when any compiled file changed.
+"""`jit`: numba's njit, with a cache on disk that notices if any compiled file has changed.
 
-numba checks only the file of the function itself: machine code that has inlined a function or a constant of another
-file, changed since, would silently stay in use. Here the folder of the cache is named by a hash of all compiled files
-and of those whose names they import.
+numba checks only the file of the function itself: machine code that has inlined a function or a constant from another
+file would silently stay in use after that file has changed. Here the folder of the cache is named by a hash of all
+compiled files and of those whose names they import.
 
-Without numba, in a browser tab, `jit` is the identity: everything runs in plain Python, some fifty times slower.
+Without numba, in a browser tab, `jit` does nothing: everything runs in plain Python, some fifty times slower.
 """
 
 import contextlib
@@ -28,9 +28,9 @@ _PACKAGE = Path(__file__).parent
 
 @functools.cache
 def cache_folder():
-    """Where the machine code of these sources is kept: the first of `_places` that takes files.
+    """Return where the machine code of these sources is kept: the first of `_places` that can be written to.
 
-    None where there is none: each process compiles for itself then.
+    It is None if there is none: then each process compiles for itself.
     """
     sources = {path: path.read_bytes() for path in sorted(_PACKAGE.rglob("*.py"))}
     compiled = b"".join(text for text in sources.values() if b"@jit(" in text or b"@kernel(" in text)
@@ -60,10 +60,10 @@ def _takes_files(folder):
 
 
 def jit(*, fastmath=("contract",), **options):
-    """Decorator: numba's njit, compiled at the first call and kept on disk. options: of njit.
+    """Decorate a function with numba's njit, compiled at the first call and kept on disk. options: of njit.
 
     Division by zero gives inf or NaN as in NumPy: the caller checks results once, not every operation. A product and a
-    sum may be rounded once, together, where the processor can: simulations are a quarter quicker.
+    sum may be rounded once, together, if the processor can do that: simulations are a quarter quicker.
     """
     if numba is None:
         return lambda function: function
@@ -71,7 +71,7 @@ def jit(*, fastmath=("contract",), **options):
 
 
 def with_cache(decorator, function, *signature, **options):
-    """Decorate a function by a decorator of numba's that has to keep its machine code in `cache_folder()`."""
+    """Decorate a function with a decorator of numba's whose machine code is to be kept in `cache_folder()`."""
     folder = cache_folder()
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
     try:
@@ -81,7 +81,9 @@ def with_cache(decorator, function, *signature, **options):
 
 
 def on_floats(function):
-    """Without numba a loop over steps on Python's floats, some times as fast as on NumPy's; with it the loop itself.
+    """Without numba, let a loop over steps run on Python's floats, several times as fast as on NumPy's.
+
+    With numba it changes nothing.
 
     Tables (two indices) are only read; what is written into vectors is carried over.
     """

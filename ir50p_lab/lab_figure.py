@@ -10,19 +10,19 @@ from matplotlib.figure import Figure
 
 
 def figure_style():
-    """The style as matplotlib parameters, for `matplotlib.rc_context(figure_style())`; changes nothing itself."""
+    """Return the style as matplotlib parameters, for `matplotlib.rc_context(figure_style())`; change nothing."""
     return dict(matplotlib.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False))
 
 
 class LabFigure(Figure):
-    """A matplotlib Figure that a notebook displays when it is the last line of a cell, with no pyplot behind it."""
+    """A matplotlib Figure that a notebook shows if it is the last line of a cell, with no pyplot behind it."""
 
     def __init__(self, *args, **options):
         super().__init__(*args, **options)
         FigureCanvasAgg(self)
 
     def describe(self):
-        """What is seen, in words, for those who do not see it: titles, axes, names of curves."""
+        """Return what is seen, in words, for those who cannot see it: titles, axes, names of curves."""
         said = [self.get_suptitle()]
         for ax in self.axes:
             axes = [getattr(ax, f"get_{axis}label", str)() for axis in "xyz"]

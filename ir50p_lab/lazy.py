@@ -1,4 +1,4 @@
-"""Names of a package that are imported when first used, with the cause kept where that fails."""
+"""Names of a package that are imported when first used; if that fails, the cause is kept."""
 
 import importlib.metadata
 import sys
@@ -11,9 +11,9 @@ from ir50p_lab.errors import DependencyError, LabError
 
 
 def attach(package, **names):
-    """As `lazy_loader.attach`, but an error while a module loads names its cause.
+    """Do the same as `lazy_loader.attach`, but let an error while a module loads name its cause.
 
-    Python turns an AttributeError in there into "cannot import name", which tells nothing.
+    Python turns an AttributeError in there into "cannot import name", which says nothing.
     """
     load, dir_of, everything = lazy_loader.attach(package, **names)
 

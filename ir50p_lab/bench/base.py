@@ -312,8 +312,9 @@ class Bench:
         return np.array(limited)
 
     def note(self, text, t=None):
-        """Write into the recording what has just been changed (gains, a payload) at t, s; default: the last sample's
-        time.
+        """Write into the recording what has just been changed (gains, a payload).
+
+        t: time of the change, s; default: that of the last sample.
         """
         if self._run is not None and self._run.recorder is not None and self.last is not None:
             self._run.recorder.event(self.last.t if t is None else t, text)

@@ -1,6 +1,4 @@
-"""Question and answer with the board: numbered commands, repeated if nothing comes, each matched with its own
-answer.
-"""
+"""Question and answer with the board: numbered commands, repeated if need be, each matched with its answer."""
 
 from types import SimpleNamespace
 

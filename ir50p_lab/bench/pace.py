@@ -106,9 +106,7 @@ class Pace:
 
 
 def load_controllers():
-    """Load the compiled controllers now; the first `step` of the first run would otherwise take 0.5 s or more for
-    it.
-    """
+    """Load the compiled controllers now; otherwise the first `step` of the first run takes 0.5 s or more for it."""
     from ir50p_lab.controllers import PID
 
     PID(kp=(0, 0, 0), limit_pwm=255).step(0.0, np.zeros(3), np.zeros((3, 3)))

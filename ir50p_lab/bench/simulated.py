@@ -115,9 +115,7 @@ class SimulatedBench(Bench):
         return Pace(self._clock, self.period) if self.realtime else super()._make_pace()
 
     def measure(self, cycle, drive):
-        """Advance to this cycle and measure; after a silence longer than the board's watchdog allows, the drive is
-        off.
-        """
+        """Advance to this cycle and measure; after a silence longer than the watchdog allows, the drive is off."""
         for late in range(cycle - self._cycle):
             if self.realtime and late * self.period >= WATCHDOG:
                 self._cut()

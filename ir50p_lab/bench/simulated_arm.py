@@ -124,8 +124,9 @@ class SimulatedArm:
         self._x[:3], self._x[3:], self._joint[:] = q, 0.0, q
 
     def push(self, link, point, force):
-        """Let a hand push from now on with force (3,) N in base coordinates at point (3,) m of frame `link`; zeros let
-        go.
+        """Let a hand push from now on with force (3,) N in base coordinates at point (3,) m of frame `link`; or let go.
+
+        With a force of zeros the hand lets go.
         """
         self._hand, self.pushed = (link, point, force), bool(np.any(force))
         self._lean()

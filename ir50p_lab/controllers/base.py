@@ -54,8 +54,7 @@ class Controller:
         self.state[:] = 0.0
 
     def set_gains(self, kp=None, ki=None, kd=None):
-        """Change gains in the middle of a run, a `PID` without a jump of its command: its integral takes up the
-        difference.
+        """Change gains in the middle of a run; a `PID` does so without a jump, its integral takes up the difference.
 
         Args: kp, ki, kd: (3,) or one number; a gain that is left out stays as it is.
         Raises InputError for gains that are negative or not finite (then none is changed).
@@ -71,9 +70,7 @@ class Controller:
             s[self.takes_up : self.takes_up + 3] += (before[0] - self.kp) * ahead + (before[1] - self.kd) * slope
 
     def header(self):
-        """Return what the head of a recording says: dict of str with the gains of the joints, the filters, and any
-        model.
-        """
+        """Return what the head of a recording says, dict of str: the gains of the joints, the filters, any model."""
         p, lines = self.parameters, {"controller": type(self).__name__}
         for name, place in self.rows:
             lines[name] = " ".join(f"{x:g}" for x in p[place : place + 3])

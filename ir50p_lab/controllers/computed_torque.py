@@ -25,7 +25,7 @@ class ComputedTorque(Controller):
     - The model is an Arm, a theta (3, 20) or (20,), or an `Estimate` from a recording. Each joint has its own row, so
       that motors of unequal gain and PWM counts need no further care.
     - The rate of the *error* is filtered, so that a joint that follows its reference sees no lag of the filter.
-    - Friction is compensated as far as the model holds any. Dry friction is that for the *reference's* direction,
+    - Friction is compensated as far as the model holds any. Dry friction takes the *reference's* direction, smoothed
       over +-smooth rad/s: measured velocity changes sign with every bit of noise, and the compensation would chatter.
     - `delay` is the time from a sample to the moment when its command acts, s; error and reference are led ahead by it.
     - The integral has anti-windup (it rests while its joint is limited), and the command has limits. `set_gains` acts

@@ -1,7 +1,7 @@
-"""What the notebooks share, in rooms: a room is a subject, and what two subjects need lies below them.
+"""What the notebooks share, in rooms: a room is one subject, and what two subjects need lies below them.
 
 From below: `draw`, `lab_book`, `printed` (the thesis's equations), `robot` (what the student owns), `checking`;
-on these `my_robot` and `live_arm`, and on all of them the subjects, from `start` to `reaching`.
+on these stand `my_robot` and `live_arm`, and on all of them the subjects, from `start` to `reaching`.
 """
 
 from ir50p_lab import home, lazy

@@ -1,10 +1,10 @@
-"""my_robot: every function is the student's own where there is one, else the course's stands in.
+"""my_robot: every function is the student's own if there is one; otherwise the course's stands in.
 
     from ir50p_lab.course import my_robot
     my_robot.rot_z(0.5)
 
 A name is looked up each time: a function that was just written, in this notebook or another, is used from then on.
-A class that is written in stages serves at its stage in the notebook that works on it, elsewhere when it is whole.
+A class that is written in stages serves at its stage in the notebook that works on it, and elsewhere once it is whole.
 `my_robot.whose("rot_z")` says whose it is: "yours", "on loan" or "the course's".
 """
 
@@ -33,7 +33,7 @@ def __getattr__(name):
 
 
 def whose(name):
-    """Say whose function is used: "yours", "on loan" or "the course's"."""
+    """Return whose function is used: "yours", "on loan" or "the course's"."""
     stage = at_work(name)
     if not student_package.is_there(stage):
         return "the course's"
@@ -41,12 +41,12 @@ def whose(name):
 
 
 def done():
-    """Names of the functions that are the student's own, in order."""
+    """Return the names of the functions that are the student's own, in order."""
     return tuple(name for name in ORDER if whose(name) == "yours")
 
 
 def progress():
-    """The robot with its parts, coloured by whose they are: LabFigure."""
+    """Return a LabFigure of the robot with its parts, coloured by whose they are."""
     from ir50p_lab.course.robot.robot_view import owned  # matplotlib takes a while: not at import
 
     return owned({name: whose(name) for name in ORDER})

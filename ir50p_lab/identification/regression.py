@@ -126,9 +126,7 @@ class Problem:
         return f"{self.who}{lost} cannot be told apart from {', '.join(name for name, _ in parts)}: {stands}"
 
     def estimate(self, z):
-        """Return the kept columns' parameters (k,) and their covariance (k, k), for z = R x with columns of length
-        1.
-        """
+        """Return the kept columns' parameters (k,) and covariance (k, k), for z = R x with columns of length 1."""
         residuals = self.y - self.Q @ z
         N, k = self.Q.shape
         scores = (self.Q * residuals[:, None]).reshape(self.n, -1, k).sum(axis=1)

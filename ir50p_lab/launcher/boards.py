@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 def board_name(vid, pid):
-    """What a USB vendor and product id stands for, by boards.toml; None if no board of ours has it."""
+    """Return what a USB vendor and product id stands for, by boards.toml; None if no board of ours has it."""
     names = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
     return None if vid is None else names.get(f"{vid:04X}:{pid:04X}")
 

@@ -1,6 +1,6 @@
-"""The project's own environment, the folder .venv: is it ready for these lock files, and if not, build it.
+"""The project's own environment, the folder .venv: is it ready for these lock files? If not, it is built.
 
-The set-up writes its stamp last and removes it first. A .venv without a valid stamp is therefore half made, whatever
+The set-up writes its stamp last and removes it first. So a .venv without a valid stamp is half made, whatever
 interrupted it, and is emptied and built again.
 """
 
@@ -52,7 +52,7 @@ class Environment:
         self._stamp = self.folder / "ir50p_lab-setup.json"
 
     def fault(self, *, tests=False):
-        """Why .venv, or its test tools, cannot be used as it is; "" if it is ready. Changes nothing."""
+        """Return why .venv, or its test tools, cannot be used as it is; "" if it is ready. Changes nothing."""
         if not any(self.folder.glob("*")):
             return _NOT_MADE
         ready = self._ready_stamp(tests=True)
@@ -75,7 +75,7 @@ class Environment:
         return f"without the tools of {TEST_LOCK}" if tests and stamp[TEST_LOCK] != ready[TEST_LOCK] else ""
 
     def ensure(self, *, tests=False, rebuild=False):
-        """Make .venv ready, building what is not; print what happens. Raises SetUpError, OSError, ImportError."""
+        """Make .venv ready, build what is missing, and print what happens. Raises SetUpError, OSError, ImportError."""
         fault = self.fault(tests=tests)
         if not rebuild and not fault:
             return
@@ -93,10 +93,10 @@ class Environment:
             print("Set-up finished.")
 
     def variables(self):
-        """Environment variables for programs that run inside .venv.
+        """Return the environment variables for programs that run inside .venv.
 
-        Without those that bring in another Python's packages or make warnings of others fatal; nor the one that
-        container images set: without bytecode each notebook compiles its libraries again, for seconds.
+        Those that bring in another Python's packages, or make other people's warnings fatal, are left out; so is the
+        one that container images set: without bytecode each notebook would compile its libraries again, for seconds.
         """
         variables = {name: value for name, value in os.environ.items() if name not in UNWANTED}
         variables["VIRTUAL_ENV"] = str(self.folder)
@@ -106,7 +106,7 @@ class Environment:
         return variables
 
     def look_inside(self, *, here=False):
-        """Run the inventory with the Python of .venv, or `here`: this one, with its variables as they are.
+        """Run the inventory with the Python of .venv, or with `here` by this one, with its variables as they are.
 
         Returns (what it found or None, last line of its errors).
         """

@@ -1,13 +1,13 @@
-"""`take_lock`: one process at a time, with the standard library only (it is needed before any package is there)."""
+"""`take_lock`: one process at a time, with the standard library only (it is needed before any package is installed)."""
 
 import os
 import time
 
 
 def take_lock(file, busy=""):
-    """Lock an open file. It falls by itself when every process that holds the file open has ended.
+    """Lock an open file. The lock ends by itself when every process that holds the file open has ended.
 
-    busy: printed once while another one holds it. Where there are no locks (some network drives) it goes on without.
+    busy: printed once while another process holds it. If there are no locks (some network drives), it goes on without.
     """
     if os.name == "nt":
         import msvcrt

@@ -1,6 +1,6 @@
 """The course from an installed wheel, without a clone: `uvx --from git+URL ir50p-lab`, `pipx run --spec ... ir50p-lab`.
 
-The wheel carries the course's files. They are copied into a folder of the student's, once, and the launcher there
+The wheel carries the course's files. They are copied once into a folder of the student's, and the launcher there
 takes over: it installs what the lock says, and opens JupyterLab.
 """
 

@@ -1,4 +1,4 @@
-"""Packages into .venv: pip puts uv there and uv does the rest; pip does all of it where uv cannot.
+"""Packages into .venv: pip puts uv there and uv does the rest; if uv cannot, pip does all of it.
 
 uv reads neither pip.conf nor PIP_*, so what they say is translated for it, by pip_settings.toml.
 """
@@ -17,7 +17,7 @@ from ir50p_lab.launcher import problems
 
 
 def for_uv(listing):
-    """Translate what `pip config list` printed: (options, variables), None if a setting has no counterpart."""
+    """Translate what `pip config list` printed into (options, variables); None if a setting has no counterpart."""
     settings = {}
     for section in ("global.", "install.", ":env:."):  # what comes later is stronger
         for line in listing.splitlines():
@@ -39,7 +39,7 @@ def for_uv(listing):
 
 
 class Installer:
-    """Runs what installs into the `environment`; all of it holds the file `lock` open."""
+    """Runs what installs into the `environment`; each such program holds the file `lock` open."""
 
     def __init__(self, environment, lock):
         self._environment = environment
@@ -52,7 +52,7 @@ class Installer:
         self._pass_fds = () if os.name == "nt" else (lock.fileno(),)
 
     def fetch_uv(self, requirement):
-        """Put uv there, and use it if it fits this machine and can do what pip is told to do. Raises SetUpError."""
+        """Install uv, and use it if it fits this machine and can do what pip is told to do. Raises SetUpError."""
         try:
             self.install("--only-binary", ":all:", requirement)
         except problems.NoWheelError:
@@ -68,7 +68,7 @@ class Installer:
         self.run([*self._install, *arguments])
 
     def run(self, command):
-        """Run to the end, seconds and last line shown on a terminal; return the output. Raises SetUpError."""
+        """Run a command to its end, showing seconds and last line on a terminal; return the output. Raises SetUpError."""
         output = ""
         with (
             clock() as last,

@@ -1,7 +1,7 @@
-"""What this Python has: packages beside what a lock file asks for, what of it can be imported, serial ports.
+"""What this Python has: its packages compared with a lock file, which of them can be imported, serial ports.
 
-Also runs as a script inside .venv: ``python inventory.py LOCK_FILE`` prints all of it as JSON. The imports compile the
-bytecode of what the course uses, so that the first notebook need not.
+It also runs as a script inside .venv: ``python inventory.py LOCK_FILE`` prints all of it as JSON. The imports compile
+the bytecode of what the course uses, so that the first notebook need not.
 """
 
 import contextlib
@@ -19,9 +19,9 @@ _STARTED = ("jupyterlab.labapp", "ipykernel.kernelapp")
 
 
 def packages(lock):
-    """List the packages that the lock file asks of this Python: name, wanted and installed version (or None).
+    """Return the packages that the lock file asks of this Python: name, wanted and installed version (or None).
 
-    Without uv, which is for the set-up only and does not exist for every machine.
+    uv is left out: it is for the set-up only and does not exist for every machine.
     """
     found = []
     for line in Path(lock).read_text("utf-8").splitlines():
@@ -32,7 +32,7 @@ def packages(lock):
 
 
 def installed_version(name):
-    """Version of an installed package, None if it is not there."""
+    """Return the version of an installed package, or None if it is not there."""
     try:
         return importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
@@ -40,7 +40,7 @@ def installed_version(name):
 
 
 def direct_dependencies(root):
-    """Names of the packages that pyproject.toml asks for."""
+    """Return the names of the packages that pyproject.toml asks for."""
     with open(Path(root) / "pyproject.toml", "rb") as file:
         dependencies = tomllib.load(file)["project"]["dependencies"]
     return [re.split(r"[<>=!~ ]", dependency)[0] for dependency in dependencies if not dependency.startswith("uv")]
@@ -49,7 +49,7 @@ def direct_dependencies(root):
 def broken_imports(distributions):
     """Import what the distributions hold, and every module of the lab book: {module: why it cannot be imported}.
 
-    The modules only if everything else can be imported: what they need is named then.
+    The modules are imported only if everything else can be; otherwise what they need is named already.
     """
     names = [
         name
@@ -75,7 +75,7 @@ def _try_import(name, broken):
 
 
 def serial_ports():
-    """Serial ports as pyserial describes them (device, vid, pid...), or None when it is not there to look."""
+    """Return the serial ports as pyserial describes them (device, vid, pid...), or None if pyserial is missing."""
     try:
         from serial.tools import list_ports
     except ImportError:

@@ -1,4 +1,4 @@
-"""Every way the set-up can fail, as one line that says what to do next: by the table in problems.toml."""
+"""Every way in which the set-up can fail, as one line that says what to do next, by the table in problems.toml."""
 
 import os
 import platform
@@ -17,7 +17,7 @@ _HOME_ROOTS = ("", ".config", ".pip", "Library/Application Support")
 
 
 class SetUpError(Exception):
-    """Something the person at the keyboard can put right; its text says how."""
+    """Something that the person at the keyboard can put right; its text says how."""
 
 
 class NoWheelError(SetUpError):
@@ -49,7 +49,7 @@ def from_output(output, code, folder, log):
 
 
 def in_force(folder):
-    """A sentence on the settings and files of pip, uv and proxies that are in force; "" if there are none."""
+    """Return a sentence on the settings and files of pip, uv and proxies that are in force; "" if there are none."""
     found = [
         f"{name}={_without_password(value)}"
         for name, value in sorted(os.environ.items())

@@ -1,7 +1,7 @@
 """Seeing the ball: pictures, the camera and its calibration, the ball, from pixel to table, reaching.
 
-Pictures are uint8 arrays (height, width, 3) in the order red, green, blue. Pixels are (x, y) with (0, 0) the centre of
-the top left one; camera axes are x right, y down, z forward. Names are loaded on first use: importing this package
+Pictures are uint8 arrays (height, width, 3) in the order red, green, blue. Pixels are (x, y), with (0, 0) at the centre
+of the top left one; camera axes are x right, y down, z forward. Names are loaded on first use: importing this package
 costs nothing, and OpenCV is loaded only by what uses it.
 """
 

@@ -1,4 +1,4 @@
-"""Checks of arguments of the public functions of this folder; private code trusts its callers."""
+"""Checks of the arguments of public functions in this folder; private code trusts its callers."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ir50p_lab.inputs import first_not_finite, numbers
 
 
 def coordinates(name, value, n, unit="px"):
-    """`value` as finite floats of shape (..., n). Raises InputError."""
+    """Return `value` as finite floats of shape (..., n). Raises InputError."""
     array = numbers(name, value, unit=unit)
     if array.ndim == 0 or array.shape[-1] != n:
         raise InputError(f"{name} has shape {array.shape}: give shape ({n},) or (..., {n}) ({unit})")
@@ -17,7 +17,7 @@ def coordinates(name, value, n, unit="px"):
 
 
 def point_list(name, value, n, unit="px"):
-    """`value` as a list of points (m, n), from one point (n,), from (m, n), or (m, 1, n) as OpenCV has them."""
+    """Return `value` as a list of points (m, n), from one point (n,), from (m, n), or from (m, 1, n) as in OpenCV."""
     array = coordinates(name, value, n, unit)
     if array.ndim > 2 and array.shape[1:] != (1, n):
         raise InputError(f"{name} has shape {array.shape}: give (n, {n}) ({unit})")
@@ -25,7 +25,7 @@ def point_list(name, value, n, unit="px"):
 
 
 def rigid(name, T):
-    """`T` as a (4, 4) float array. Raises InputError unless it is a rotation and a translation."""
+    """Return `T` as a (4, 4) float array. Raises InputError unless it is a rotation and a translation."""
     T = numbers(name, T, unit="m and a rotation")
     good = T.shape == (4, 4) and np.isfinite(T).all() and np.array_equal(T[3], [0, 0, 0, 1])
     if not good or np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max() > 1e-6 or np.linalg.det(T[:3, :3]) < 0:
@@ -37,7 +37,7 @@ def rigid(name, T):
 
 
 def picture_size(size):
-    """(width, height) as whole numbers of pixels. Raises InputError."""
+    """Return (width, height) as whole numbers of pixels. Raises InputError."""
     array = numbers("size = (width, height)", size, unit="whole pixels")
     if array.shape != (2,) or not (array >= 1).all() or (array != np.round(array)).any():
         raise InputError(f"size = {size!r}: give (width, height) of the picture as whole pixels, at least 1")
@@ -45,7 +45,7 @@ def picture_size(size):
 
 
 def check_picture_size(camera, size):
-    """Raise CalibrationError if a picture of this size, (width, height), is not one of the Calibration or Pinhole."""
+    """Raise CalibrationError if a picture of this size, (width, height), does not fit the Calibration or Pinhole."""
     if tuple(size) != tuple(camera.size):
         sizes = "{}x{}, not {}x{}".format(*camera.size, *size)
         remedy = "set the camera to that size, or calibrate it at the new one"

@@ -1,4 +1,4 @@
-"""Where a flat board is, seen from the camera: its pose from its corners."""
+"""Where a flat board is, as seen from the camera: its pose from its corners."""
 
 import numpy as np
 
@@ -11,13 +11,14 @@ _WORST_RMS = 5.0  # px: if corners miss the board by more, it has another size, 
 
 
 def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
-    """Inner corners of a checkerboard, row by row as the finders give them, (n, 3) m in table coordinates.
+    """Return the inner corners of a checkerboard, row by row as the finders give them, (n, 3) m in table coordinates.
 
-    Board coordinates: the first corner, x along a row, y along the rows, z away from the viewer, so into the table.
+    Board coordinates: the first corner is the origin, x goes along a row, y across the rows, z away from the viewer and
+    so into the table.
 
-    Args: pattern: corners along a row, and rows; square: m; T_table_board: (4, 4) where the board lies. Default: print
-    upwards, its first corner at the origin, rows along x, further rows towards -y: diag(1, -1, -1, 1). The identity
-    gives the corners in board coordinates, for `board_pose` of a board in the hand.
+    Args: pattern: number of corners in a row, and of rows; square: m; T_table_board: (4, 4), where the board lies.
+    Default: print upwards, its first corner at the origin, rows along x, further rows towards -y: diag(1, -1, -1, 1).
+    The identity gives the corners in board coordinates, for `board_pose` of a board in the hand.
     Raises CalibrationError for a pattern, InputError for a square that no board has.
     """
     grid = Checkerboard(pattern, square).points
@@ -26,7 +27,9 @@ def board_points(pattern=(9, 6), square=0.025, T_table_board=None):
 
 
 def board_pose(camera, corners, points):
-    """(T_cam_board (4, 4), rms px) of a flat board: IPPE for the start, then least squares of the reprojection error.
+    """Return (T_cam_board (4, 4), rms px) of a flat board.
+
+    IPPE gives the start, least squares of the reprojection error the rest.
 
     camera: Pinhole or Calibration; corners: (n, 2) px; points: (n, 3) m, the same corners, all in one plane.
     Raises CalibrationError if the corners fit no such board (rms above 5 px), InputError on wrong shapes.
@@ -52,7 +55,7 @@ def board_pose(camera, corners, points):
 
 
 def transform(rvec, tvec):
-    """Homogeneous transform (4, 4) of OpenCV's rotation vector (3,) rad and translation (3,) m."""
+    """Return the homogeneous transform (4, 4) of OpenCV's rotation vector (3,) rad and translation (3,) m."""
     import cv2
 
     T = np.eye(4)
@@ -61,12 +64,12 @@ def transform(rvec, tvec):
 
 
 def inverse_transform(T):
-    """The transform back: (R^T, -R^T t)."""
+    """Return the inverse of a rigid transform (4, 4): (R^T, -R^T t)."""
     back = np.eye(4)
     back[:3, :3], back[:3, 3] = T[:3, :3].T, -T[:3, :3].T @ T[:3, 3]
     return back
 
 
 def transform_points(T, points):
-    """Points (n, 3) or (3,) under the transform T (4, 4)."""
+    """Return points (n, 3) or (3,) under the transform T (4, 4)."""
     return points @ T[:3, :3].T + T[:3, 3]

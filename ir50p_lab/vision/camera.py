@@ -1,4 +1,4 @@
-"""Cameras: a source of frames. A webcam is opened quietly, gives fresh pictures, and says when it is unplugged."""
+"""Cameras as sources of frames. A webcam is opened quietly, gives fresh pictures, and says when it is unplugged."""
 
 import sys
 import time
@@ -16,7 +16,7 @@ _AT_ONCE = 0.005  # s: if a picture comes sooner, it has waited in the driver, a
 
 
 class Webcam(Camera):
-    """A webcam by its number, 0 for the first; size: (width, height) asked for, the camera may give another.
+    """A webcam by its number, 0 for the first. size: (width, height) to ask for; the camera may give another.
 
     Raises CameraError if there is none, ImageError if its pictures have no colour.
     """
@@ -38,7 +38,10 @@ class Webcam(Camera):
             raise
 
     def read(self):
-        """The next Frame, not one that was waiting. Raises CameraError if there is none, or it is busy or unplugged."""
+        """Return the next Frame, not one that was already waiting.
+
+        Raises CameraError if there is no such webcam, or it is busy or unplugged.
+        """
         began = time.monotonic()
         for _ in range(5):  # drop old pictures: those come at once, for a new one grab() waits
             asked = time.monotonic()
@@ -61,10 +64,10 @@ class Webcam(Camera):
 
 
 class PictureFolder(Camera):
-    """The pictures of a folder as a camera, in the order of their names; simulated: as the first of them says.
+    """The pictures of a folder as a camera, in the order of their names; simulated: if the first of them is rendered.
 
-    Raises ImageError for a folder without pictures, and by `read` for a file that cannot be read; CameraError by `read`
-    after the last one.
+    Raises ImageError for a folder without pictures, and from `read` for a file that cannot be read; CameraError from
+    `read` after the last one.
     """
 
     def __init__(self, folder):
@@ -73,7 +76,7 @@ class PictureFolder(Camera):
         self.size = load_image(self._paths[0]).shape[1::-1]
 
     def read(self):
-        """The next picture: Frame."""
+        """Return the next picture as a Frame."""
         if not self._paths:
             raise CameraError(f"{self.name} has no more pictures: open it again to begin with the first")
         path = self._paths.pop(0)
@@ -81,11 +84,11 @@ class PictureFolder(Camera):
 
 
 def open_camera(source=None, *, size=(640, 480)):
-    """Open a camera and say in one line which.
+    """Open a camera, say in one line which it is, and return it.
 
-    source: a number, that webcam of this computer; "page", the camera of the browser that shows the notebook, live
-    below the cell and read in the next one; "folder:PATH", the pictures of a folder. Default: what IR50P_CAMERA says,
-    else "page" in a notebook and 0 in a script. size: (width, height) asked of a camera.
+    source: a number: that webcam of this computer; "page": the camera of the browser that shows the notebook, live
+    below the cell and to be read in the next one; "folder:PATH": the pictures of a folder. Default: what IR50P_CAMERA
+    says, else "page" in a notebook and 0 in a script. size: (width, height) to ask of a camera.
     Raises CameraError if there is no such webcam, ImageError for a folder without pictures.
     """
     source = str((setting("IR50P_CAMERA") or _usual()) if source is None else source)

@@ -1,4 +1,4 @@
-"""Pictures as arrays: read, check, write. Always uint8, (height, width, 3), in the order red, green, blue."""
+"""Pictures as arrays: read, check, write. They are always uint8, (height, width, 3), in the order red, green, blue."""
 
 import io
 import re
@@ -20,8 +20,8 @@ _READ = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".ppm", ".pg
 def check_image(image, name="image"):
     """Return `image` if it is a colour picture: uint8, (height, width, 3), red green blue.
 
-    Raises ImageError, naming what it is instead and what to do, for None, an empty array, one channel, four channels,
-    or numbers that are not bytes.
+    Raises ImageError, which says what it is instead and what to do, for None, an empty array, one channel, four
+    channels, or numbers that are not bytes.
     """
     if not isinstance(image, np.ndarray):
         what = "None" if image is None else f"a {type(image).__name__}"
@@ -37,16 +37,16 @@ def check_image(image, name="image"):
 
 
 def to_grey(image):
-    """Grey picture (h, w) uint8 of a colour one (h, w, 3): 0.299 R + 0.587 G + 0.114 B, rounded (thesis 3.1.1)."""
+    """Return a colour picture (h, w, 3) as grey (h, w) uint8: 0.299 R + 0.587 G + 0.114 B, rounded (thesis 3.1.1)."""
     import cv2
 
     return cv2.cvtColor(check_image(image), cv2.COLOR_RGB2GRAY)
 
 
 def load_image(path, *, allow_grey=False):
-    """Read a picture: (h, w, 3) uint8, red green blue; the right way up if its EXIF says so, without transparency.
+    """Read a picture: (h, w, 3) uint8, red green blue, turned upright as its EXIF says, without transparency.
 
-    Of an animation the first picture is taken. allow_grey: a picture of one channel is taken too, its value three
+    Of an animation the first picture is taken. allow_grey: a picture of one channel is taken, too, with its value three
     times (a checkerboard needs no colour).
     Raises ImageError for a path that is missing or a folder; for a file that is empty, no picture, damaged or cut off;
     for a picture of one channel, or of more than 8 bits.
@@ -82,10 +82,10 @@ def _bytes(path):
 
 
 def save_image(path, image, *, rendered=False, quality=95):
-    """Write a picture (h, w, 3) uint8, red green blue, as the suffix of `path` says (.png, .jpg, ...).
+    """Write a picture (h, w, 3) uint8, red green blue, in the format that the suffix of `path` names (.png, .jpg, ...).
 
     rendered: put the mark into the file (PNG and JPEG only) that `is_rendered` finds. quality: of JPEG.
-    Raises ImageError for what is not a picture, a suffix that cannot be marked, or a place that cannot be written.
+    Raises ImageError for what is not a picture, a format that cannot be marked, or a place that cannot be written.
     """
     if rendered and Path(path).suffix.lower() not in (".png", ".jpg", ".jpeg"):
         raise ImageError("only PNG and JPEG files can say that they are rendered: choose .png or .jpg")
@@ -99,12 +99,12 @@ def save_image(path, image, *, rendered=False, quality=95):
 
 
 def is_rendered(path):
-    """Whether the picture file carries the mark of a rendered one. Raises ImageError for a file that is not there."""
+    """Return whether the picture file carries the mark of a rendered one. Raises ImageError for a missing file."""
     return MARK.encode() in _bytes(path)[:4096]
 
 
 def list_images(folder):
-    """Paths of the pictures in a folder, in the order of their names, numbers in them by value (view2 before view10).
+    """Return the paths of the pictures in a folder, sorted by name, with numbers by value (view2 before view10).
 
     Raises ImageError for a missing folder or one without pictures.
     """

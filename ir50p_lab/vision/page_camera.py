@@ -29,8 +29,8 @@ class _LivePicture(anywidget.AnyWidget):
 class PageCamera(Camera):
     """The camera of the computer that shows the page, live below the cell that opens it.
 
-    The page answers between cells: open it in one cell, and read it in the next. size: (width, height) of the pictures.
-    `image` is the last picture, (h, w, 3) RGB, None until one has come.
+    The page answers between cells: open the camera in one cell, and read it in the next. size: (width, height) of the
+    pictures. `image` is the last picture, (h, w, 3) RGB, or None until one has come.
     """
 
     name = "the page's camera"
@@ -79,13 +79,13 @@ class PageCamera(Camera):
     def each(self, **functions):
         """Give every picture to functions, by name: f(rgb) -> (x, y, radius) px, or None.
 
-        Their circles are drawn, with the names, on the picture that was searched. Without any function: as before.
-        They run beside the cells: no plots in them.
+        Their circles are drawn, with the names, on the picture that was searched. A call without functions ends this.
+        They run while other cells run: they must draw no plots.
         """
         self._functions = functions
 
     def read(self):
-        """A Frame newer than the last one. Raises CameraError, with what to do, if none comes."""
+        """Return a Frame newer than the last one. Raises CameraError, with what to do, if none comes."""
         if self._thread is None:
             raise CameraError("the page answers between cells: read it in the next cell, when its picture is there")
         asked = time.time()
@@ -105,6 +105,6 @@ class PageCamera(Camera):
         display(Image(file.getvalue(), alt=f"A picture of {self.name}"))
 
     def close(self):
-        """Switch the camera off; no picture of it stays."""
+        """Switch the camera off; none of its pictures stays."""
         self.each()
         self._live.send({"start": False})

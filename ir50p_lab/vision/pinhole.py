@@ -22,11 +22,11 @@ class Pinhole:
         x_d = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2),    r^2 = x^2 + y^2
         y_d = y (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 y^2) + 2 p2 x y
 
-    (the thesis names both kinds of distortion in 3.2.2.1 and gives no formula), and the pixel is K (x_d, y_d, 1).
+    (the thesis names both kinds of distortion in 3.2.2.1 but gives no formula), and the pixel is K (x_d, y_d, 1).
     The centre of the top left pixel is (0, 0).
 
     Args:
-        K: (3, 3), [[fx, skew, cx], [0, fy, cy], [0, 0, 1]], pixels: column form; MATLAB prints its transpose.
+        K: (3, 3), [[fx, skew, cx], [0, fy, cy], [0, 0, 1]], pixels, in column form; MATLAB prints its transpose.
         distortion: k1, k2, p1, p2, k3 in the order of OpenCV; 0, 2, 4 or 5 numbers, the rest is zero.
         size: (width, height) of the picture, pixels.
 
@@ -48,7 +48,7 @@ class Pinhole:
 
     @classmethod
     def simple(cls, f, size=(640, 480), distortion=()):
-        """Square pixels and the axis through the middle of the picture: f focal length, pixels."""
+        """Make a Pinhole with square pixels and its axis through the middle of the picture; f: focal length, pixels."""
         width, height = picture_size(size)
         K = [[f, 0, (width - 1) / 2], [0, f, (height - 1) / 2], [0, 0, 1]]
         return cls(K, distortion, (width, height))
@@ -59,7 +59,7 @@ class Pinhole:
     cy = property(lambda self: float(self.K[1, 2]), doc="Row of the optical axis, pixels.")
 
     def project(self, T_cam_world, X):
-        """Pixels (n, 2) of the points X (n, 3) m in world coordinates; one point (3,) gives (2,).
+        """Return the pixels (n, 2) of the points X (n, 3) m in world coordinates; one point (3,) gives (2,).
 
         T_cam_world: (4, 4), takes world to camera coordinates.
         Raises InputError for a wrong shape, NaN, or a point that is not in front of the camera.
@@ -76,7 +76,7 @@ class Pinhole:
         return self.to_pixels(self.distort(X_cam[..., :2] / depth[..., None]))
 
     def distort(self, xy):
-        """Distorted normalised coordinates (..., 2) of undistorted ones (..., 2)."""
+        """Return the distorted normalised coordinates (..., 2) of undistorted ones (..., 2)."""
         xy = coordinates("xy", xy, 2, "normalised coordinates")
         k1, k2, p1, p2, k3 = self.distortion
         x, y = xy[..., 0], xy[..., 1]
@@ -87,18 +87,18 @@ class Pinhole:
         return np.stack([xd, yd], axis=-1)
 
     def to_pixels(self, xy):
-        """Pixels K (x, y, 1) of normalised coordinates (..., 2), without distortion."""
+        """Return the pixels K (x, y, 1) of normalised coordinates (..., 2), without distortion."""
         xy = coordinates("xy", xy, 2, "normalised coordinates")
         return xy @ self.K[:2, :2].T + self.K[:2, 2]
 
     def to_normalised(self, xy):
-        """Normalised coordinates (..., 2) of pixels (..., 2); distortion is not taken out."""
+        """Return the normalised coordinates (..., 2) of pixels (..., 2); distortion is not removed."""
         return (coordinates("xy", xy, 2) - self.K[:2, 2]) @ np.linalg.inv(self.K[:2, :2]).T
 
     def undistort_points(self, xy):
-        """Normalised coordinates (..., 2) without distortion of pixels (..., 2).
+        """Return the normalised coordinates (..., 2), with distortion removed, of pixels (..., 2).
 
-        Raises InputError where no point within the picture angle is distorted to that pixel.
+        Raises InputError if no point within the picture angle is distorted to that pixel.
         """
         found = self.undistort_or_nan(xy)
         lost = np.isnan(found).any(axis=-1)
@@ -111,7 +111,7 @@ class Pinhole:
         return found
 
     def undistort_or_nan(self, xy):
-        """As `undistort_points`, by OpenCV's iteration; NaN for a pixel to which the lens sends no ray."""
+        """Return the same as `undistort_points`, by OpenCV's iteration; NaN where the lens sends no ray to a pixel."""
         import cv2
 
         distorted, k = self.to_normalised(xy), self.distortion
@@ -128,13 +128,13 @@ class Pinhole:
         return np.where((rising & (off < 1e-9))[..., None], found, np.nan)
 
     def rays(self, xy):
-        """Directions (..., 3), of length 1 in camera coordinates, that the pixels (..., 2) look along."""
+        """Return the unit directions (..., 3), in camera coordinates, along which the pixels (..., 2) look."""
         xy = self.undistort_points(xy)
         d = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1)
         return d / np.linalg.norm(d, axis=-1, keepdims=True)
 
     def straighten(self, image):
-        """The picture (h, w, 3) without distortion: what the same K sees through a lens that does not bend.
+        """Return the picture (h, w, 3) without distortion: what the same K sees through a lens that does not bend.
 
         Raises ImageError for what is not a picture, CalibrationError for one of another size.
         """
@@ -144,10 +144,10 @@ class Pinhole:
         return cv2.undistort(image, self.K, self.distortion)
 
     def scaled(self, size):
-        """The same lens with a picture of another size (width, height): the field of view in x is kept.
+        """Return the same lens with a picture of another size (width, height); the field of view in x is kept.
 
-        Pixel edges, not centres, scale: c' = (c + 1/2) s - 1/2. The height follows from the new size by cropping
-        or adding rows alike at top and bottom.
+        Pixel edges scale, not centres: c' = (c + 1/2) s - 1/2. The height follows from the new size: the same number of
+        rows is cropped or added at top and bottom.
         """
         width, height = picture_size(size)
         s = width / self.size[0]
@@ -182,7 +182,7 @@ def _check_distortion(distortion):
 
 
 def as_pinhole(camera):
-    """`camera` as a Pinhole: a Pinhole itself, or that of a Calibration. Raises InputError for anything else."""
+    """Return `camera` as a Pinhole: a Pinhole itself, or that of a Calibration. Raises InputError for anything else."""
     pinhole = camera if isinstance(camera, Pinhole) else getattr(camera, "pinhole", None)
     if not isinstance(pinhole, Pinhole):
         raise InputError(f"camera = {camera!r:.60}: give a Pinhole(K, distortion, size) or a Calibration")

@@ -1,7 +1,7 @@
-"""Rendered pictures of the bench: rays through four places of every pixel, with the truth beside each picture.
+"""Rendered pictures of the bench: rays through four places of every pixel, and the truth about each picture.
 
-Lengths in m in the base frame of the arm, table at z = 0. Colours are (red, green, blue) 0..255 as on the screen.
-Everything about the room is assumed; noise, blur and compression are those of a cheap webcam.
+Lengths are in m in the base frame of the arm, with the table at z = 0. Colours are (red, green, blue) 0..255 as on the
+screen. Everything about the room is assumed; noise, blur and compression are those of a cheap webcam.
 """
 
 import functools
@@ -39,7 +39,7 @@ CAMERA_BENCH, LOOKS_AT_BENCH = (1.0, 0.05, 0.62), (0.40, 0.0, 0.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Stick:
-    """A round stick with round ends from `start` to `end` (3,) m: link of an arm, finger, pen."""
+    """A round stick with round ends from `start` to `end` (3,) m: a link of an arm, a finger, a pen."""
 
     start: tuple
     end: tuple
@@ -50,7 +50,7 @@ class Stick:
 
 @dataclass(frozen=True, kw_only=True)
 class SceneBall:
-    """A ball: centre (3,) m, radius m, colour name or (r, g, b); gloss: strength of its highlight, 0 matt to 1."""
+    """A ball: centre (3,) m, radius m, colour name or (r, g, b); gloss: strength of its highlight, 0 (matt) to 1."""
 
     position: tuple = (0.40, 0.0, 0.03)
     radius: float = 0.030  # thesis 4.5.3
@@ -73,7 +73,10 @@ class Patch:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scene:
-    """pinhole and T_cam_world (4, 4): the camera; objects: SceneBall or Stick; patches; arm: Sticks; exposure."""
+    """What is rendered.
+
+    pinhole, T_cam_world (4, 4): the camera; objects: SceneBall or Stick; patches; arm: Sticks; exposure.
+    """
 
     pinhole: Pinhole
     T_cam_world: np.ndarray
@@ -96,7 +99,7 @@ class SceneTruth(namedtuple("SceneTruth", "balls pinhole")):
 
 
 def look_at(position, target):
-    """T_cam_world (4, 4) of a camera at `position` (3,) m that looks at `target` (3,) m, not straight down."""
+    """Return T_cam_world (4, 4) of a camera at `position` (3,) m that looks at `target` (3,) m, not straight down."""
     z = np.subtract(target, position) / np.linalg.norm(np.subtract(target, position))
     x = np.cross(z, (0.0, 0.0, 1.0)) / np.hypot(*z[:2])
     T = np.eye(4)
@@ -106,23 +109,23 @@ def look_at(position, target):
 
 
 def pose(position, rotation_vector=(0.0, 0.0, 0.0)):
-    """T_world_thing (4, 4) at `position` (3,) m, turned by `rotation_vector` (3,) rad (axis times angle)."""
+    """Return T_world_thing (4, 4) at `position` (3,) m, turned by `rotation_vector` (3,) rad (axis times angle)."""
     return transform(vectors3("rotation_vector", rotation_vector), vectors3("position", position, unit="m"))
 
 
 def bench_camera():
-    """(Pinhole, T_cam_world) of the webcam on its stand across the table from the arm."""
+    """Return (Pinhole, T_cam_world) of the webcam on its stand across the table from the arm."""
     return _PINHOLE, look_at(CAMERA_BENCH, LOOKS_AT_BENCH)
 
 
 def bench_scene(*objects, **changes):
-    """The default bench with these objects (default: one red ball); `changes` are fields of Scene."""
+    """Return the default bench with these objects (default: one red ball); `changes` are fields of Scene."""
     scene = dict(zip(("pinhole", "T_cam_world"), bench_camera(), strict=True), objects=objects or (SceneBall(),))
     return Scene(**(scene | changes))
 
 
 def arm_sticks(q, arm, *, opening=0.07):
-    """The arm at q (3,) rad as Sticks: column, links, joints, and two fingers `opening` m apart (sizes assumed)."""
+    """Return the arm at q (3,) rad as Sticks: column, links, joints, two fingers `opening` m apart (sizes assumed)."""
     T = frames(arm, q)
     base, shoulder, elbow, tip = (T[i, :3, 3] for i in range(4))
     along, sideways = T[3, :3, 0], T[2, :3, 2]
@@ -141,7 +144,7 @@ def arm_sticks(q, arm, *, opening=0.07):
 
 
 def light_of(colour):
-    """Linear light (3,) of a colour name or (r, g, b) 0..255."""
+    """Return the linear light (3,) of a colour name or (r, g, b) 0..255."""
     if isinstance(colour, str) and colour not in COLOURS:
         raise InputError(f"colour {colour!r} is not known: give (r, g, b) or one of {', '.join(COLOURS)}")
     s = np.float32(COLOURS.get(colour, colour) if isinstance(colour, str) else colour) / 255
@@ -149,7 +152,10 @@ def light_of(colour):
 
 
 def render_scene(scene, seed=0):
-    """The picture (h, w, 3) uint8 of a Scene, and its SceneTruth: the same for the same scene and seed of the noise."""
+    """Return the picture (h, w, 3) uint8 of a Scene, and its SceneTruth.
+
+    It is the same for the same scene and `seed` of the noise.
+    """
     w, h = scene.pinhole.size
     light = _light(scene).reshape(h, _SUB, w, _SUB, 3).mean(axis=(1, 3))
     light = cv2.GaussianBlur(light, (0, 0), 0.5) * np.float32(scene.exposure)

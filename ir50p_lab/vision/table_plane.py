@@ -19,14 +19,14 @@ class TablePlane:
         s x_n = H (X, Y, 1),  H = [r1  r2  t + h r3]                                       (4.5.3 corrected)
 
     for the plane at height h. The thesis inverts [R; t] K, which is 4x3 and has no inverse: the third row of [R; t]
-    must go, and with it Z, which is known, not found. In its row notation H^T = [r1; r2; t + h r3].
+    must be left out, and with it Z, which is known and need not be found. In its row notation H^T = [r1; r2; t + h r3].
 
     Args:
         camera: Pinhole or Calibration.
         T_cam_table: (4, 4), takes coordinates of the table (z up, 0 on its surface) to those of the camera (z forward,
         y down).
 
-    Attributes: camera; T_cam_table; rms: px, of the board it was made from, or None; centre: (3,) m, of the lens.
+    Attributes: camera; T_cam_table; rms: px, of the board from which it was made, or None; centre: of the lens, (3,) m.
     Raises InputError if T_cam_table is not a rigid transform, a shape is wrong, or the camera lies below the table.
     """
 
@@ -41,20 +41,20 @@ class TablePlane:
 
     @classmethod
     def from_board(cls, camera, corners, points):
-        """The plane from a board that lies at a known place on the table.
+        """Make the plane from a board that lies at a known place on the table.
 
         Args: camera: Pinhole or Calibration; corners: (n, 2) px, as found; points: (n, 3) m, the same corners in table
         coordinates (`board_points`).
-        Raises as `board_pose`.
+        Raises the same as `board_pose`.
         """
         return cls(camera, *board_pose(camera, corners, points))
 
     @classmethod
     def from_picture(cls, camera, image, pattern=(9, 6), square=0.025, T_table_board=None):
-        """The plane from a picture (RGB) of a checkerboard that lies at T_table_board; see `board_points`.
+        """Make the plane from a picture (RGB) of a checkerboard that lies at T_table_board; see `board_points`.
 
-        Raises CalibrationError for a picture of another size than the calibration's, and if the board is not found,
-        with the reason; else as `from_board`.
+        Raises CalibrationError for a picture of another size than the calibration's, and, with the reason, if the board
+        is not found; else the same as `from_board`.
         """
         from ir50p_lab.vision.calibration.corners import find_checkerboard
         from ir50p_lab.vision.calibration.reject_reasons import NotUsable
@@ -69,18 +69,19 @@ class TablePlane:
         return cls.from_board(camera, corners, board_points(pattern, square, T_table_board))
 
     def homography(self, height=0.0):
-        """H (3, 3) of the plane at `height` m: s (x_n, y_n, 1) = H (X, Y, 1)."""
+        """Return H (3, 3) of the plane at `height` m: s (x_n, y_n, 1) = H (X, Y, 1)."""
         R, t = self.T_cam_table[:3, :3], self.T_cam_table[:3, 3]
         return np.column_stack([R[:, 0], R[:, 1], t + number("height", height, unit="m") * R[:, 2]])
 
     def to_table(self, xy, height=0.0):
-        """Places (n, 2) m on the plane at `height` m for pixels (n, 2); a single pixel (2,) gives (2,).
+        """Return the places (n, 2) m on the plane at `height` m that pixels (n, 2) show; a pixel (2,) gives (2,).
 
         Args:
-            xy: px, centre of the top-left pixel (0, 0); distorted, as in the picture. For a ball give the place where
-            its centre is seen, as `find_balls` does; the middle of its outline lies a little farther out.
+            xy: px, with (0, 0) the centre of the top left pixel; distorted, as in the picture. For a ball give the
+                place where its centre is seen, as `find_balls` does; the middle of its outline lies a little farther
+                out.
             height: m above the table; a ball of radius r on the table has its centre at height r. Read at height 0
-            it seems farther away, by r times the tangent of the camera's angle from the vertical.
+                it seems farther away, by r times the tangent of the camera's angle from the vertical.
 
         Raises InputError on bad pixels; VisionError for a pixel whose line of sight does not meet the plane.
         """
@@ -100,10 +101,10 @@ class TablePlane:
         return found[0] if np.ndim(xy) == 1 else found
 
     def to_points(self, xy, height=0.0):
-        """As `to_table`, with the height as third coordinate: (n, 3) or (3,) m, table coordinates."""
+        """Return the same as `to_table` with the height as third coordinate: (n, 3) or (3,) m, table coordinates."""
         place = self.to_table(xy, height)
         return np.concatenate([place, np.full((*place.shape[:-1], 1), float(height))], axis=-1)
 
     def to_image(self, points):
-        """Where points (n, 3) or (3,) m of the table appear: (n, 2) or (2,) px."""
+        """Return where points (n, 3) or (3,) m of the table appear: (n, 2) or (2,) px."""
         return self.pinhole.project(self.T_cam_table, points)

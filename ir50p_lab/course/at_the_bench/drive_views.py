@@ -17,7 +17,7 @@ _COLOURS = COLOURS["blue"], COLOURS["orange"], COLOURS["green"]
 
 
 def go(controller, reference, seconds):
-    """The loop of notebook 08, on a real arm with the student's calibration. Returns: Recording."""
+    """Run the loop of notebook 08 on a real arm with the student's calibration. Returns: Recording."""
     with arm_at_rest(load_arm(), "calibration") as bench:
         return bench.follow(controller, reference, seconds)
 
@@ -26,7 +26,7 @@ _STARTS = 0.5 + 1.2 * np.arange(8)  # s, of the pushes
 
 
 def eight_pushes(bench):
-    """Eight pushes of 200 counts at the waist, 0.4 s each, to and fro, whatever the angles. Returns: Recording."""
+    """Push the waist eight times with 200 counts, 0.4 s each, to and fro, whatever the angles. Returns: Recording."""
     for sample in bench.run(seconds=10.1, note="first motion"):
         since = sample.t - _STARTS
         now = np.flatnonzero((since > -0.001) & (since < 0.399))  # which push, if any
@@ -35,7 +35,7 @@ def eight_pushes(bench):
 
 
 def mean_push(first_motion):
-    """How the waist moves when it is pushed: s since the push (50,), the mean turn after `eight_pushes` (50,) rad."""
+    """Return how the waist moves when pushed: s since the push (50,), mean turn after `eight_pushes` (50,) rad."""
     rows = np.searchsorted(first_motion.t, _STARTS - 0.001)
     waist, push = first_motion.q[:, 0], first_motion.u[:, 0]
     moves = [np.sign(push[k]) * (waist[k - 10 : k + 40] - np.mean(waist[k - 40 : k])) for k in rows]
@@ -43,7 +43,7 @@ def mean_push(first_motion):
 
 
 def three_parts(centre, tip, wanted):
-    """How far tips (n, 3) m are from where they should be on a level circle: (n, 3) mm, outwards, behind, upwards."""
+    """Return how far tips (n, 3) m are off a level circle, (n, 3) mm: outwards, behind, upwards."""
     out = (wanted - centre) / np.linalg.norm(wanted - centre, axis=1, keepdims=True)
     left = np.cross([0, 0, 1], out)
     sense = np.sign(np.sum(left[:-1] * np.diff(wanted, axis=0)))  # which way round it goes
@@ -52,7 +52,7 @@ def three_parts(centre, tip, wanted):
 
 
 class Filtered:
-    """The student's low pass of notebook 10 between the potentiometers and a controller, sample by sample."""
+    """A controller behind the student's low pass of notebook 10, which filters the potentiometers sample by sample."""
 
     def __init__(self, controller, cutoff_hz):
         self.controller = controller
@@ -64,13 +64,13 @@ class Filtered:
         self.controller.reset()
 
     def step(self, t, q, reference):
-        """Pushes for filtered angles."""
+        """Return the controller's pushes for filtered angles."""
         self._seen = q if self._seen is None else self._seen + self._share * (q - self._seen)
         return self.controller.step(t, self._seen, reference)
 
 
 def circle_figure(centre, radius, recording, wanted, **tips):
-    """The path of the tip from above, its height, and how far behind it is: LabFigure.
+    """Draw the path of the tip from above, its height, and how far behind it is. Returns: LabFigure.
 
     Args: wanted: (n, 3) m, places of the tip at the end of the recording's t; tips: label -> (n, 3) m.
     """
@@ -92,7 +92,7 @@ def circle_figure(centre, radius, recording, wanted, **tips):
 
 
 def run_simulated(arm, controller, reference, seconds, *, late=0.02, **options):
-    """The loop of the lesson on a simulated arm, as fast as it can, not kept on disk.
+    """Run the loop of the lesson on a simulated arm, as fast as it can; nothing is kept on disk.
 
     late: s from sample to action, in whole samples; options: of SimulatedBench.
     Returns: the SimulatedBench, with recording and truth; it starts from the rest pose.
@@ -108,7 +108,7 @@ def run_simulated(arm, controller, reference, seconds, *, late=0.02, **options):
 
 
 def bench_for_faults(fault, **options):
-    """An open bench on which `fault` may be made: the simulated arm, unless the lab's own file allows it here."""
+    """Return an open bench on which `fault` may be made: simulated, unless the lab's own file allows it here."""
     bench = arm_that_answers(**options)
     try:
         bench.caps.check_fault(fault)
@@ -147,7 +147,7 @@ def _cable_pulled(bench):
 def after_fault(bench, fault_at=1.0):
     """Return s from the fault to the end of the run, degrees the waist turned meanwhile, mm the tip has sunk since.
 
-    Of a simulated arm the truth; of a real one what was measured, and nobody knows (nan) how far it sank.
+    For a simulated arm they are the truth; for a real one they are measured, and how far it sank is not known (nan).
     """
     known = getattr(bench, "truth", bench.recording)
     waist = known.q[known.t >= fault_at - 1e-9, 0]

@@ -13,7 +13,7 @@ _RULER = np.random.default_rng(0)
 
 
 def moved_by_hand(arm, poses):
-    """Hold a simulated arm about each of the poses (n, 3) rad, within some degrees; its table is taken away.
+    """Hold a simulated arm near each of the poses (n, 3) rad, within some degrees, with its table taken away.
 
     Read again, it scatters anew.
     Returns: angles (n, 3) rad as a protractor shows them, to half a degree; counts (n, 3), means of half a second.
@@ -29,12 +29,12 @@ def moved_by_hand(arm, poses):
 
 
 def by_ruler(tip):
-    """Where a simulated ruler sees a tip (3,) m: in whole mm, and 1 mm (rms) off in each direction."""
+    """Return where a simulated ruler sees a tip (3,) m: in whole mm, and 1 mm (rms) off in each direction."""
     return np.round(tip + _RULER.normal(0, 0.001, 3), 3)
 
 
 def counts_by_hand():
-    """Counts (3,), the mean of half a second in which nobody drives: your hand carries the arm."""
+    """Return counts (3,), the mean of half a second without drive, while your hand carries the arm."""
     bench = connect(record_to=False)
     rows = [sample.counts for sample in bench.run(seconds=0.5, record=False)]
     bench.abort()  # a `with` would end in the rest pose: the arm would move under your hand
@@ -58,7 +58,7 @@ def error_bands(x, fit, at):
 
 
 def residuals(angles, left):
-    """Plot residuals (n, 3) mrad over angles (n, 3) rad, each with a parabola that shows a bow: LabFigure."""
+    """Plot residuals (n, 3) mrad over angles (n, 3) rad, each with a parabola that shows a bow. Returns: LabFigure."""
     figure, *axes = subplots(9.0, 2.9, cols=3)
     for ax, q, rest, label in zip(axes, angles.T, left.T, JOINT_LABELS, strict=True):
         ax.axhline(0, **SETPOINT)

@@ -1,9 +1,9 @@
-"""The live panel: the arm in the background under sliders, with a scope; the notebook stays free.
+"""The live panel: the arm in the background under sliders, with a scope, while the notebook stays free.
 
     panel = live_panel(bench, PID(kp=(289, 225, 270), ki=(50, 10, 50), kd=(40, 30, 30), limit_pwm=255))
     panel
 
-The panel only gives orders to `bench.start(...)`'s loop and looks at its samples. Nothing of safety hangs on it: a
+The panel only gives orders to the loop of `bench.start(...)` and looks at its samples. No safety depends on it: a
 closed browser changes nothing, a dead kernel cuts the drive.
 """
 
@@ -30,13 +30,13 @@ _FRAME, _WINDOW = 1 / 25, 10.0  # s, of the scope
 
 
 def live_panel(bench, controller, reference=None):
-    """A panel to start, stop and tune `controller` on `bench`.
+    """Return a panel to start, stop and tune `controller` on `bench`.
 
     Args:
-        bench: an open bench, whichever. controller: PID, or any controller; one with kp, ki, kd gets sliders for them.
+        bench: any open bench. controller: PID, or any controller; one with kp, ki, kd gets sliders for them.
         reference: target(t), until a set point slider is moved; None: hold the pose where the arm stands.
 
-    Returns: BenchPanel, shown when it is the last line of a cell. A cell that is run again takes over a running loop.
+    Returns: BenchPanel, shown if it is the last line of a cell. A cell that is run again takes over a running loop.
     """
     return BenchPanel(bench, controller, reference)
 
@@ -121,7 +121,7 @@ class BenchPanel(widgets.VBox):
     # ---- what it does
 
     def start(self, *, wait=True):
-        """Start the loop. wait: until it runs (a board that restarts takes 3 s)."""
+        """Start the loop. wait: whether to wait until it runs (a board that restarts takes 3 s)."""
         if wait:
             self._start()
         else:
@@ -155,12 +155,12 @@ class BenchPanel(widgets.VBox):
             self._put({f"q{i + 1}": math.degrees(samples.reference[-1, i]) for i in range(3)})
 
     def stop(self, *, wait=True):
-        """End in order: to the rest pose, then let go."""
+        """End the loop in order: the arm moves to the rest pose and is let go. wait: whether to wait for that."""
         if self.run is not None:
             self.run.stop(wait=wait)
 
     def cut(self):
-        """Drive off at once, and the loop ends."""
+        """Cut the drive at once and end the loop."""
         self._cut_wanted = True
         if self.run is not None:
             self.run.cut()
@@ -178,7 +178,7 @@ class BenchPanel(widgets.VBox):
                 raise self.error
 
     def close(self):
-        """End loop, scope and panel. Nothing of the bench is closed."""
+        """End loop, scope and panel. The bench stays open."""
         self._closed.set()
         if self.run is not None and self.run.alive and self.bench.live_run is self.run:
             self.run.stop()

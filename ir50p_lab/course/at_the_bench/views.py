@@ -4,7 +4,7 @@ from ir50p_lab.course.draw.style import COLOURS, origin, subplots
 
 
 def replay_figure(recording, replayed):
-    """What was sent to joint 1 then, and what other gains would send for the same angles. Returns: LabFigure.
+    """Draw what was sent to joint 1 then, and what other gains would send for the same angles. Returns: LabFigure.
 
     Args: recording: Recording, with u; replayed: Recording of a ReplayBench.
     """

@@ -13,7 +13,7 @@ T_HAND_BOARD = transform((0.3, 1.2, 0.2), (0.02, -0.06, -0.05))
 
 
 class Session(NamedTuple):
-    """Poses (n, 3) rad, where the camera saw the board in them (n, 4, 4), and where the camera really stands (4, 4)."""
+    """Poses (n, 3) rad, the board as the camera saw it in them (n, 4, 4), and the camera's true place (4, 4)."""
 
     poses: np.ndarray
     T_cam_board: np.ndarray
@@ -21,7 +21,7 @@ class Session(NamedTuple):
 
 
 def board_in_the_hand(poses=15, *, noise=0.1, seed=0):
-    """So many poses of the IR50P in which the whole board is in the picture, corners with `noise` px: Session."""
+    """Return a Session of `poses` poses of the IR50P with the whole board in the picture, corners with `noise` px."""
     rng, (camera, T_cam_base) = np.random.default_rng(seed), bench_camera()
     points, found, seen = board_points(T_table_board=np.eye(4)), [], []
     while len(found) < poses:

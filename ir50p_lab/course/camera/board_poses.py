@@ -1,4 +1,4 @@
-"""Poses of a board held before a camera, for trying a calibration where the truth is known."""
+"""Poses of a board held in front of a camera, to try a calibration where the truth is known."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ _TILTS_DEG = (8, 42)
 
 
 def board_poses(pinhole, count, seed=0, board=None):
-    """T_cam_board (count, 4, 4): a board all over the picture, tilted in all directions, fully in view.
+    """Return T_cam_board (count, 4, 4): a board all over the picture, tilted in all directions, fully in view.
 
     pinhole: Pinhole or Calibration; seed: of the generator; board: Checkerboard.
     Raises InputError if no such poses are found.

@@ -11,7 +11,7 @@ class SightView(widgets.VBox):
     """A picture, a slider for the height, and the arm.
 
     Args:
-        picture: (h, w, 3) bytes. pose_for: f(pixel, height m) -> q (3,) rad, or None where the arm cannot go.
+        picture: (h, w, 3) bytes. pose_for: f(pixel, height m) -> q (3,) rad, or None if the arm cannot go there.
         hand: LiveArm. pixel: (x, y), where it looks at first.
     """
 

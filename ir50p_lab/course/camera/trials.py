@@ -8,7 +8,7 @@ from ir50p_lab.vision import Checkerboard, calibrate_corners
 
 
 def calibrated_with_noise(lens, count, noise):
-    """The Calibration from `count` pictures whose corners are off by `noise` px (standard deviation) in x and in y."""
+    """Return the Calibration from `count` pictures with corners off by `noise` px (standard deviation) in x and y."""
     rng, points = np.random.default_rng(4), Checkerboard().points
     seen = [lens.project(T, points) for T in board_poses(lens, count, seed=5)]
     corners = [one + rng.normal(0, noise, one.shape) for one in seen]
@@ -16,7 +16,7 @@ def calibrated_with_noise(lens, count, noise):
 
 
 def find_circles(mask, circle_votes, radii, count):
-    """The `count` best circles (x, y, radius), px, in a mask (h, w), by the votes of `circle_votes` as in 16."""
+    """Return the `count` best circles (x, y, radius), px, in a mask (h, w), by the votes of `circle_votes` as in 16."""
     rows, columns = np.indices(mask.shape)
     found = []
     for _ in range(count):

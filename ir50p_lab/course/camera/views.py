@@ -9,7 +9,7 @@ from ir50p_lab.course.draw.style import COLOURS, new_figure, subplots
 
 
 def grid_figure(picture, H, title="Lines 50 mm apart on the table"):
-    """A picture, and over it the grid of the table that H (3, 3), pixels to places, says. Returns: LabFigure."""
+    """Draw a picture, and over it the grid of the table that H (3, 3), pixels to places, gives. Returns: LabFigure."""
     figure, ax = subplots(6.4, 5.0, note=STAMP)
     bare_picture(ax, picture, title)
     along, across = np.arange(0.20, 0.651, 0.05), np.arange(-0.30, 0.301, 0.05)
@@ -23,14 +23,17 @@ def grid_figure(picture, H, title="Lines 50 mm apart on the table"):
 
 
 def circled(picture, circles, alt, colour="white"):
-    """A picture with circles (x, y, radius), px, over it: PictureView."""
+    """Return a PictureView of a picture with circles (x, y, radius), px, drawn over it."""
     view = PictureView(picture, alt=alt)
     view.circles = [(*circle, colour) for circle in circles]
     return view
 
 
 def triangles_figure(lens, ball):
-    """A lens (3,) m, a ball of 30 mm radius with its centre at (3,) m, and the line of sight. Returns: LabFigure."""
+    """Draw a lens (3,) m, a ball of 30 mm radius with its centre at (3,) m, and the line of sight.
+
+    Returns: LabFigure.
+    """
     away, high, h = np.hypot(*(ball - lens)[:2]), lens[2], ball[2]
     beyond = h * away / (high - h)
     figure, wide, near = subplots(9.6, 3.8, cols=2, width_ratios=(1.5, 1))
@@ -55,13 +58,13 @@ def triangles_figure(lens, ball):
 
 
 def bare_picture(ax, image, title=""):
-    """A picture without ticks, pixel (0, 0) centred on the origin."""
+    """Draw a picture without ticks, with pixel (0, 0) centred on the origin."""
     show_picture(ax, image, title, interpolation="antialiased")
     ax.set_axis_off()
 
 
 def pinhole_figure(**points):
-    """Rays through a pinhole and where they cut the plane at Z = 1 (the idea of Figure 3.10). Returns: LabFigure.
+    """Draw rays through a pinhole and where they cut the plane at Z = 1 (the idea of Figure 3.10). Returns: LabFigure.
 
     points: up to three by name, (X, Y, Z) m in camera coordinates; X over Z is drawn, as seen from above.
     """
@@ -79,7 +82,7 @@ def pinhole_figure(**points):
 
 
 def contact_sheet(images, calibration):
-    """All pictures, small: corners on those that were used, the reason on the others. Returns: LabFigure.
+    """Draw all pictures, small: corners on those that were used, the reason on the others. Returns: LabFigure.
 
     images: pictures (h, w, 3), in the order given to `calibrate`; calibration: Calibration.
     """

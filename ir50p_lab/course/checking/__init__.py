@@ -1,1 +1,1 @@
-"""check(name, answer): what a student wrote is tried, graded, and kept when it is right."""
+"""check(name, answer): what a student wrote is tried, graded, and kept if it is right."""

@@ -1,4 +1,4 @@
-"""A student's function is called: with copies, its errors made into sentences, and nothing of what it got changed."""
+"""How a student's function is called: it gets copies, its errors become sentences, and a changed input is noticed."""
 
 import copy
 import inspect
@@ -11,7 +11,7 @@ from ir50p_lab.course.checking.task import Failed, is_run, short_text
 
 
 def check_signature(task, function, case):
-    """Raise Failed where a function cannot be called with the arguments of a case."""
+    """Raise Failed if a function cannot be called with the arguments of a case."""
     try:
         inspect.signature(function).bind(*case)
     except TypeError:
@@ -21,7 +21,7 @@ def check_signature(task, function, case):
 
 
 def call(task, function, case):
-    """What a function returns for a case; where it stops, the Failed that says why. Raises Failed for changed input."""
+    """Return what a function returns for a case. Raises Failed, which says why, if it stops or changes its input."""
     mine = copy.deepcopy(case)
     try:
         result = call_or_fail(lambda: function(*mine), lambda: case_in_words(task, case))
@@ -37,7 +37,7 @@ def call(task, function, case):
 
 
 def call_or_fail(do, case=str):
-    """What `do` gives; case: function that names the case, called only when it fails. Raises Failed from the error."""
+    """Return what `do()` returns; raise Failed from its error. case: function that names the case, called only then."""
     try:
         with np.errstate(all="ignore"):
             return do()
@@ -50,7 +50,7 @@ def call_or_fail(do, case=str):
 
 
 def array_like(expected, function, *arguments, **named):
-    """What a function in a view gives, as an array like the one expected; dots count as 0. Raises Failed."""
+    """Return what a function in a view returns, as an array like the expected one; dots count as 0. Raises Failed."""
     returned = call_or_fail(lambda: function(*arguments, **named))
     if isinstance(returned, np.ndarray) and returned.dtype == object:
         returned = np.where(returned == ..., 0, returned)
@@ -60,6 +60,6 @@ def array_like(expected, function, *arguments, **named):
 
 
 def case_in_words(task, case):
-    """The arguments of a case in words."""
+    """Return the arguments of a case in words."""
     named = sorted(zip(task.signature, case, strict=True), key=lambda one: is_run(one[1]))  # long ones at the end
     return "for " + ", ".join(f"{name} = {short_text(value)}" for name, value in named)

@@ -1,4 +1,4 @@
-"""A function taken out of the notebook: its own lines and the helpers of its cell, able to stand in a file."""
+"""A function taken out of the notebook: its own lines and the helpers of its cell, ready to stand in a file."""
 
 import ast
 import builtins
@@ -24,10 +24,10 @@ _BACK_DOORS = {"__import__", "eval", "exec", "compile", "open", "input", "getatt
 def extract(thing, name, earlier, given="", function_arguments=()):
     """Return the Source of a function or class as its cell has it.
 
-    name: what it has to be called; earlier: names of the functions of `my_robot` it may lean on. Lines of the cell that
-    it does not need stay behind; given: text of helpers that it may use; function_arguments: names of those that are
-    functions. Raises CannotTake, saying why: another name, a
-    variable or an import from elsewhere.
+    name: what it has to be called; earlier: names of the functions of `my_robot` that it may use. Lines of the cell
+    that it does not need are left behind; given: text of helpers that it may use; function_arguments: names of the
+    arguments that are functions. Raises CannotTake, which says why: another name, a variable or an import from
+    elsewhere.
     """
     thing = inspect.unwrap(thing)
     called = getattr(thing, "__name__", "?")
@@ -40,7 +40,7 @@ def extract(thing, name, earlier, given="", function_arguments=()):
 
 
 def cut(text, name, earlier, given="", function_arguments=(), notebook=()):
-    """Return the Source of a function out of the text of its cell or file, which is not run. See `extract`.
+    """Return the Source of a function, cut out of the text of its cell or file, which is not run. See `extract`.
 
     notebook: variables of the notebook, {name: value}. Raises CannotTake.
     """
@@ -80,7 +80,7 @@ def cut(text, name, earlier, given="", function_arguments=(), notebook=()):
 
 
 def compile_source(source, task):
-    """The function of a Source with NumPy, math and the earlier functions, and nothing of the notebook."""
+    """Return the function of a Source, which sees NumPy, math and the earlier functions, not the notebook."""
     room = {"np": np, "numpy": np, "math": math}
     for name in source.calls:
         room[name] = student_package.load(name) if student_package.is_there(name) else task_of_name(name).reference
@@ -91,7 +91,7 @@ def compile_source(source, task):
 
 
 def cell_text(thing):
-    """The text of the cell in which a function was defined. Raises CannotTake."""
+    """Return the text of the cell in which a function was defined. Raises CannotTake."""
     code = getattr(plain_function(thing), "__code__", None)
     text = "".join(linecache.getlines(code.co_filename)) if code else ""
     if not text:
@@ -116,7 +116,7 @@ def _definitions(tree):
 
 
 def globals_of(node):
-    """Names that a definition looks up outside itself, as the compiler sees them."""
+    """Return the names that a definition looks up outside itself, as the compiler sees them."""
     names, codes = {}, [compile(ast.Module([node], []), "cell", "exec")]
     while codes:
         code = codes.pop()

@@ -1,4 +1,4 @@
-"""check(name, answer): what a student wrote is tried, graded, and kept when it is right."""
+"""check(name, answer): what a student wrote is tried, graded, and kept if it is right."""
 
 import ast
 import hashlib
@@ -26,8 +26,8 @@ def check(name, answer=...):
 
     name: of a function ("rot_z"), a stage of a class ("PID.p") or a number exercise ("start-1").
     answer: the function or class itself, or the number.
-    Shows a sentence and returns None; raises nothing, whatever the answer does. Of a function that stays in its
-    notebook it returns the one to go on with: the student's if it is right, else the course's.
+    Shows a sentence and returns None. For a function that stays in its notebook it returns the one to go on with: the
+    student's if it is right, else the course's. Raises nothing, whatever the answer does.
     """
     if stays(str(name)):
         return check_here(name, answer)
@@ -51,7 +51,7 @@ def check(name, answer=...):
 
 
 def reset(name):
-    """Start a function again: yours goes to my_robot/old, and the course's stands in for it."""
+    """Start a function again: yours is moved to my_robot/old, and the course's stands in for it."""
     if not is_function(str(name)):
         raise InputError(f"{name!r} is not a function of my_robot; those are {', '.join(ORDER)}")
     student_package.put_aside(name)

@@ -1,4 +1,4 @@
-"""Right answers spoilt in every usual way: a wrong answer is told by the numbers it shares with one of them."""
+"""Right answers spoilt in all the usual ways: a wrong answer is recognised by the numbers it shares with one."""
 
 import math
 from functools import cache
@@ -18,7 +18,7 @@ def _changes(name):
 
 
 def distortions(task):
-    """Yield Mistakes: results misplaced, arguments misread."""
+    """Yield the usual Mistakes in a task: results misplaced, arguments misread."""
     yield from _of_results(task)
     yield from _of_arguments(task)
 
@@ -139,7 +139,7 @@ def _with_turn(y, turned):
 
 # ------------------------------------------------------------------------------------------- what needs no suspicion
 def entries(task, cases, returned, expected):
-    """A sentence on the entries that are wrong, if they are few and always the same; else ""."""
+    """Return a sentence on the entries that are wrong, if they are few and always the same; else ""."""
     shape = np.shape(expected[0])
     if not shape or any(np.shape(one) != shape for one in (*returned, *expected)):
         return ""

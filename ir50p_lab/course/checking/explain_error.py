@@ -1,4 +1,4 @@
-"""Why a student's function stopped: the line it stopped in, and the usual reason in plain words."""
+"""Why a student's function stopped: the line in which it stopped, and the usual reason in plain words."""
 
 import ast
 import linecache
@@ -15,7 +15,7 @@ _INSIDE = "inside a function that this line calls. Does it get the right things,
 
 
 def why_it_stops(error):
-    """A sentence on an error: the line, the usual reason, what did not fit together, and Python's own words."""
+    """Return a sentence on an error: the line, the usual reason, what did not fit together, and Python's own words."""
     line, operands, memory = _where(error)
     said = f"Python says {type(error).__name__}: {error}"
     reason = memory or _usual(error)

@@ -1,4 +1,4 @@
-"""Try a student's function on many inputs and say in a sentence what was found."""
+"""Try a student's function on many inputs, and say in a sentence what was found."""
 
 import copy
 import inspect
@@ -20,7 +20,10 @@ from ir50p_lab.course.robot.source import Source
 
 @dataclass(frozen=True)
 class Grade:
-    """state: "right" or "wrong"; says: one or two sentences; example: one failing input with both answers, or ""."""
+    """The result of grading an answer.
+
+    state: "right" or "wrong"; says: one or two sentences; example: one failing input with both answers, or "".
+    """
 
     state: str
     says: str
@@ -55,7 +58,7 @@ class _Trial:
 
 
 def grade(task, answer):
-    """Return the Grade on a function or class, or on the Source of one, whatever it does."""
+    """Return the Grade of a function or class, or of the Source of one. Raises nothing, whatever it does."""
     function = compile_source(answer, task) if isinstance(answer, Source) else answer
     try:
         if task.trial is not None:

@@ -1,4 +1,4 @@
-"""check of a function that stays in its notebook: it is tried as it stands there, and the course's serves meanwhile."""
+"""check for a function that stays in its notebook: it is tried as it stands there; the course's serves meanwhile."""
 
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.judge_text import is_open
@@ -7,7 +7,7 @@ from ir50p_lab.course.checking.tasks import of_notebook
 
 
 def check_here(name, function):
-    """Say what was found in a function of a notebook; return it where it is right, else the course's own."""
+    """Say what was found in a function of a notebook; return it if it is right, else the course's own."""
     wanted = of_notebook(name)
     if function is ... or is_open(function):
         show(Note("open", name, f"not written yet. It returns {wanted.returns}. Until then the course's serves."))

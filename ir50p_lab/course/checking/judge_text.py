@@ -26,7 +26,7 @@ class CannotTake(Exception):  # noqa: N818  (a sentence for the student, never s
 
 
 def check_allowed(definitions):
-    """Raise CannotTake where a definition imports or opens what it may not, or changes what is not its own."""
+    """Raise CannotTake if a definition imports or opens what it may not, or changes what is not its own."""
     for node in definitions:
         _refuse_imports(node)
         _refuse_doors(node)
@@ -34,14 +34,14 @@ def check_allowed(definitions):
 
 
 def plain_function(thing):
-    """The function; for a class its first method; None if it has none."""
+    """Return the function itself, or the first method of a class; None if there is none."""
     if hasattr(thing, "__code__"):
         return thing
     return next((value for value in vars(thing).values() if hasattr(value, "__code__")), None)
 
 
 def has_dots(text):
-    """The lines in which dots still stand where the answer should be (those of `a[..., 0]` do not count)."""
+    """Return the lines in which dots still stand where the answer should be (those of `a[..., 0]` do not count)."""
     tree = ast.parse(text)
     indices = {id(one) for node in ast.walk(tree) if isinstance(node, ast.Subscript) for one in ast.walk(node.slice)}
     dots = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and node.value is ...]
@@ -49,7 +49,7 @@ def has_dots(text):
 
 
 def written_wrong(function):
-    """What a function's own lines tell: an argument overwritten, `==` for `=`, one array under many names; or ""."""
+    """Say what is wrong in a function's lines: an argument overwritten, `==` for `=`, an array of many names; or ""."""
     code = getattr(plain_function(inspect.unwrap(function)), "__code__", None)
     file, given = getattr(code, "co_filename", ""), code.co_varnames[: code.co_argcount] if code else ()
     tree = ast.parse("".join(linecache.getlines(file)) if file.startswith(ROOM) else "")
@@ -67,7 +67,7 @@ def written_wrong(function):
 
 
 def is_open(function):
-    """Tell whether dots still stand in a function of the notebook; of one typed into a console nothing is known."""
+    """Return True if dots still stand in a function of the notebook; of one typed into a console nothing is known."""
     try:
         return bool(has_dots(textwrap.dedent(inspect.getsource(function))))
     except (OSError, TypeError, SyntaxError):

@@ -10,7 +10,10 @@ _COLOURS = {"right": "#009E73", "open": "#999999", "mistake": "#E69F00", "wrong"
 
 @dataclass(frozen=True)
 class Note:
-    """A sentence with a bar, and what can be opened below it: more, pairs (title, text); the first may be open."""
+    """A sentence with a bar, and what can be opened below it.
+
+    more: pairs (title, text), of which the first may be open from the start.
+    """
 
     state: str
     name: str
@@ -38,12 +41,12 @@ class Note:
 
 
 def show(note: Note) -> None:
-    """Display in a notebook; print elsewhere."""
+    """Display a Note in a notebook; print it elsewhere."""
     from IPython.display import display
 
     display(note)
 
 
 def with_full_stop(says):
-    """A sentence with its full stop; a question has its mark already."""
+    """Return a sentence with its full stop; a question has its mark already."""
     return says if says.endswith(("?", ".")) else f"{says}."

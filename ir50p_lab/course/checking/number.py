@@ -29,14 +29,14 @@ _COMMON = {  # mistakes that are known without being told, of any unit ("") and 
 class Number:
     """A question whose answer is a number or an array of numbers, compared entry by entry.
 
-    name: "pose-3". notebook: the name of its file, without the end.
+    name: "pose-3". notebook: the name of its file, without the ending.
     task: the question in one line, without a full stop. right: number or array.
     tolerance: largest absolute difference of an entry that still counts as right; because: why that much.
-    why: one line that a right answer earns.
+    why: one line, shown for a right answer.
     mistakes: {what to say: a typical wrong answer, or a function of the right one (np.negative)}.
-    unit: what the numbers are in, "rad", "m", "N m"; "" for none or several.
-    angle: the entries are angles in rad, equal modulo 2 pi.
-    hint: said to a wrong answer that is not a known mistake.
+    unit: of the numbers, "rad", "m", "N m"; "" for none or several.
+    angle: whether the entries are angles in rad, equal modulo 2 pi.
+    hint: shown for a wrong answer that is not a known mistake.
     """
 
     name: str
@@ -57,17 +57,17 @@ class Number:
 
     @property
     def wanted(self):
-        """What is asked for, in words, without the answer."""
+        """What is wanted, in words, without the answer."""
         return shape_in_words(self.right.shape) + f" in {self.unit}" * bool(self.unit)
 
     @property
     def every_mistake(self):
-        """{what to say: wrong answer}: its own, then the common ones."""
+        """All mistakes, {what to say: wrong answer}: its own, then the common ones."""
         mistakes = self.mistakes | _COMMON[""] | _COMMON.get(self.unit, {})
         return {message: wrong(self.right) if callable(wrong) else wrong for message, wrong in mistakes.items()}
 
     def near(self, found, target, tolerance):
-        """Tell for each entry whether it is as near to that of the target as the tolerance."""
+        """Return for each entry whether it is within the tolerance of that of the target."""
         off = np.subtract(found, target)
         if self.angle:
             off = (off + np.pi) % (2 * np.pi) - np.pi
@@ -75,7 +75,7 @@ class Number:
 
 
 def shape_in_words(shape):
-    """What an array of this shape is called: 'a number', '3 numbers', 'a 4 x 4 matrix'."""
+    """Return what an array of this shape is called: 'a number', '3 numbers', 'a 4 x 4 matrix'."""
     if len(shape) < 2:
         return f"{shape[0]} number{'s' * (shape[0] != 1)}" if shape else "a number"
     return f"a {' x '.join(map(str, shape))} {'matrix' if len(shape) == 2 else 'array'}"

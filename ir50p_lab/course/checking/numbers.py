@@ -1,4 +1,4 @@
-"""Number exercises: found by their names, an answer beside the right one, and a sentence on what was found."""
+"""Number exercises: found by their names; an answer is compared with the right one, and a sentence tells."""
 
 import difflib
 import importlib
@@ -29,7 +29,7 @@ class _Unreadable(Exception):  # noqa: N818  (turned into a sentence, never show
 
 
 def check_number(name, answer=...):
-    """Show what was found in an answer; a right one is noted in the progress file. Raises nothing."""
+    """Show what was found in an answer; a right one is recorded in the progress file. Raises nothing."""
     try:
         note = grade_number(find(name), answer)
         if note.state == "right":
@@ -44,10 +44,10 @@ def check_number(name, answer=...):
 def solution(name):
     """Return the right answer, for instructors.
 
-    name: of a number exercise ("pose-3"): its number, or an array (a copy). Of a function of `my_robot` ("rot_z"), or
-    of a stage of one ("PID.p"): the text of a right one, without checks of its arguments; `my_robot` itself has it as
-    a function. Of a function that stays in its notebook: its lines, in the names of that notebook. Raises InputError
-    for an unknown name, and for a function that is still to come.
+    name: of a number exercise ("pose-3"): its number, or an array (a copy) is returned. Of a function of `my_robot`
+    ("rot_z"), or of a stage of one ("PID.p"): the text of a right one, without checks of its arguments (`my_robot`
+    itself has it as a function). Of a function that stays in its notebook: its lines, in the names of that notebook.
+    Raises InputError for an unknown name, and for a function that is still to come.
     """
     if stays(str(name)):
         return of_notebook(name).solution_text
@@ -55,7 +55,10 @@ def solution(name):
 
 
 def everything(holding=""):
-    """Return the Numbers of all rooms in the order of the notebooks; only rooms that hold this text are imported."""
+    """Return the Numbers of all rooms in the order of the notebooks.
+
+    holding: only rooms whose file holds this text are imported.
+    """
     found = []
     for path in sorted(Path(__file__).parents[1].glob("*/numbers.py")):
         if path != Path(__file__) and holding in path.read_text(encoding="utf-8"):
@@ -64,7 +67,7 @@ def everything(holding=""):
 
 
 def find(name):
-    """Return the Number of this name; InputError names the nearest ones."""
+    """Return the Number of this name. Raises InputError, which names the nearest ones."""
     if not isinstance(name, str):
         raise InputError('The name of the exercise comes first, as text: check("start-1", answer).')
     wanted = name.strip().lower()
@@ -77,9 +80,9 @@ def find(name):
 
 
 def grade_number(number, answer):
-    """Compare an answer with the right one: a Note. Never raises, whatever the answer does.
+    """Compare an answer with the right one; return a Note. Raises nothing, whatever the answer does.
 
-    Its state is "open" (still the stub), "right", "mistake" (a known one), "wrong", or "unreadable".
+    The state of the Note is "open" (still the stub), "right", "mistake" (a known one), "wrong", or "unreadable".
     """
     try:
         state, text = _compared(number, answer)

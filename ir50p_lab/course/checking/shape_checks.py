@@ -1,10 +1,10 @@
-"""What came back before its numbers are looked at: is it an array of the right shape, are there enough results?"""
+"""What is checked before the numbers of an answer: is it an array of the right shape, are there enough results?"""
 
 import numpy as np
 
 
 def kind_of(returned):
-    """Why something cannot be read as numbers, or ""."""
+    """Return why something cannot be read as numbers, or ""."""
     if callable(returned):
         return f"it returns the function {getattr(returned, '__name__', '')}, not what that gives: add its arguments"
     try:
@@ -18,7 +18,7 @@ def kind_of(returned):
 
 
 def no_numbers(returned, expected):
-    """Why something is not what is expected before its numbers are looked at, or ""."""
+    """Return why an answer cannot be compared with the expected one at all, or ""."""
     if returned is None:
         return "it returns nothing for some inputs: is its `return` reached in every case?"
     if says := kind_of(returned):
@@ -36,7 +36,7 @@ def no_numbers(returned, expected):
 
 
 def number_of_results(names, returned, expected):
-    """Why an answer is not as many results as are asked for, or ""."""
+    """Return why an answer does not have as many results as are asked for, or ""."""
     asked = f"{len(names)} results are asked for, {', '.join(names)}, in this order"
     if returned is None:
         return f"it returns nothing for some inputs: {asked}"

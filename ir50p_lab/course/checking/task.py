@@ -1,4 +1,4 @@
-"""One function that the student writes: what is asked, on what it is tried, and how it is wrong when it is wrong."""
+"""One function that the student writes: what is asked, on what it is tried, and how it goes wrong."""
 
 import inspect
 import re
@@ -14,7 +14,7 @@ _LONG = 12  # numbers: of a longer row the first and last three are shown
 
 
 class Failed(Exception):  # noqa: N818  (becomes a sentence)
-    """What the student wrote does not do what it has to; args: sentence, and one input that fails or nothing."""
+    """What the student wrote does not do what it has to; args: a sentence, and one input that fails or nothing."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,16 @@ class Mistake:
 
 
 def text_of(*functions):
-    """Functions as a student would write them: their text without the docstring."""
+    """Return functions as a student would write them: their text without docstrings."""
     texts = (re.sub(r'\n    """.*?"""', "", inspect.getsource(one), count=1, flags=re.DOTALL) for one in functions)
     return "\n\n".join(texts).rstrip()
 
 
 def apply_changes(text, changes, names):
-    """What a text defines, over `names`, with changes in it: "old -> new". Raises ValueError where no old is."""
+    """Run a text with changes "old -> new" made in it; return {name: what it defines}, `names` included.
+
+    Raises ValueError if an old part is not in the text.
+    """
     for old, new in (map(str.strip, change.split("->")) for change in changes):
         text.index(old)  # a change that would change nothing
         text = text.replace(old, new)
@@ -52,28 +55,28 @@ def _rows(text):
 
 @cache
 def table(name, beside=__file__):
-    """The paragraphs of NAME.txt beside a module: pairs (what to say, lines indented below it)."""
+    """Return the paragraphs of NAME.txt beside a module: pairs (what to say, lines indented below it)."""
     return _rows(Path(beside).with_name(f"{name}.txt").read_text(encoding="utf-8"))
 
 
 @cache
 def sections(name, beside):
-    """The parts of NAME.txt beside a module: {heading: text}; a heading stands behind "# "."""
+    """Return the parts of NAME.txt beside a module: {heading: text}; a heading is a line that begins with "# "."""
     text = Path(beside).with_name(f"{name}.txt").read_text(encoding="utf-8")
     _, *parts = re.split(r"^# (.+)\n", text, flags=re.MULTILINE)
     return {heading: part.strip() for heading, part in zip(parts[::2], parts[1::2], strict=True)}
 
 
 def sentences(name, beside):
-    """What is said where no mistake of the table fits: {key: sentence}, from lines "key: sentence"."""
+    """Return what is said if no mistake of the table fits: {key: sentence}, from lines "key: sentence"."""
     lines = re.sub(r"\n +", " ", sections(name, beside).get("otherwise", "")).splitlines()
     return dict(line.split(": ", 1) for line in lines)
 
 
 def changes_of(text):
-    """Pairs (sentence, changes) of a table of mistakes, most specific first.
+    """Yield pairs (sentence, changes) from a table of mistakes, most specific first.
 
-    Below a sentence stands, indented, what makes the mistake out of the solution: its changes, "old  ->  new", one a
+    Below each sentence, indented, is what makes the mistake out of the solution: its changes, "old  ->  new", one per
     line. A line that begins with "or:" starts another way to make it.
     """
     for says, lines in _rows(text):
@@ -82,12 +85,12 @@ def changes_of(text):
 
 
 def wrong_one(function, changes):
-    """The function with these changes in its text."""
+    """Return the function with these changes made in its text."""
     return apply_changes(text_of(function), changes, {"np": np, **function.__globals__})[function.__name__]
 
 
 def mistakes(function):
-    """The mistakes in the table of a function."""
+    """Return the Mistakes in the table of a function."""
     return _made(function, sections(function.__name__, inspect.getfile(function)).get("mistakes", ""))
 
 
@@ -96,29 +99,29 @@ def _made(function, table):
 
 
 def nth_result(function, result):
-    """A function that gives one of several results of another."""
+    """Return a function that gives one of several results of another function."""
     return lambda *case: function(*case)[result]
 
 
 @dataclass(frozen=True)
 class Task:
-    """A function of `my_robot`.
+    """A function of `my_robot`, as an exercise.
 
     name: of the function; returns: one line, what it gives back; reference: the course's own answer, a function of the
     same arguments; signature: their names.
-    cases: tuples of arguments, edge cases among them; leans_on: earlier functions it may call.
+    cases: gives tuples of arguments, edge cases among them; leans_on: earlier functions that it may call.
     mistakes: those with a sentence of their own, most specific first; the usual ones need none (`distortions`);
-    also_right: functions of several results that are right as well;
-    entry_names: of what stands beside each other in the answer.
-    results: names, where several things are returned: each is graded by itself; `tolerance` and `compare` may be tuples
-    then, one for each.
+    also_right: other functions, of several results, that are right as well;
+    entry_names: names of the entries of the answer.
+    results: names, if several things are returned; each is then graded by itself, and `tolerance` and `compare` may be
+    tuples, with one for each.
     symptom: function of (case, returned, expected) that returns a sentence about what no mistake covers, or "".
-    check_form: function of one right answer; a sentence if later functions cannot use it as it is, or "".
+    check_form: function of one right answer; returns a sentence if later functions cannot use it as it is, or "".
     hints: two, opened on demand; solution_text: a plain solution, whose names are words; it is what is lent.
     compare: tells whether what came back is what was expected; None: equal within tolerance. unit: of what comes back.
-    test: its small test, as text; needed where an argument is a function.
-    A class, or a function of keywords alone, has no cases; trial: function of it, raises `Failed` or returns a remark
-    on a right answer ("": none); reference: what stands in.
+    test: its small test, as text; needed if an argument is a function.
+    A class, or a function of keywords alone, has no cases. Then trial is a function of it that raises `Failed` or
+    returns a remark on a right answer ("": none), and reference is what stands in.
     """
 
     name: str
@@ -158,7 +161,7 @@ class Task:
         return tuple(name for name, value in zip(self.signature, case, strict=False) if callable(value))
 
     def of(self, result):
-        """The task of one of several results alone."""
+        """Return the task of one of several results alone."""
         mistakes = tuple(replace(one, function=nth_result(one.function, result)) for one in self.mistakes)
         return replace(
             self,
@@ -173,7 +176,7 @@ class Task:
         )
 
     def agrees(self, returned, expected):
-        """Tell whether what came back is what was expected; what is not an answer is not."""
+        """Return True if what came back is what was expected; what is no answer at all is not."""
         try:
             if not self.results:
                 return _is_same(returned, expected, self.compare, self.tolerance)
@@ -183,7 +186,7 @@ class Task:
             return False
 
     def expected(self, case, returned):
-        """The right answer to a case: of several (`rights`) the one that came back, result by result."""
+        """Return the right answer to a case; of several (`also_right`) the one that came back, result by result."""
         right = self.reference(*case)
         for other in self.also_right:
             also = other(*case)
@@ -199,9 +202,9 @@ class Task:
 
 
 def task_of(right, *, helpers=(), **options):
-    """The Task of a function of the course: its text is the loan, all sentences on it stand in NAME.txt beside it.
+    """Return the Task of a function of the course: its text is the loan, all sentences about it are in NAME.txt.
 
-    helpers: functions that it calls and a student has to write along; options: what else a Task has.
+    helpers: functions that it calls and that a student has to write as well; options: what else a Task has.
     """
     name, file = right.__name__, inspect.getfile(right)
     options = {"mistakes": mistakes(right)} | words(name, file) | options
@@ -209,7 +212,7 @@ def task_of(right, *, helpers=(), **options):
 
 
 def words(name, beside):
-    """Options of a Task from NAME.txt: what it returns, two hints, its small test if one of numbers will not do."""
+    """Return options of a Task from NAME.txt: what it returns, two hints, its small test if it has one."""
     text = sections(name, beside)
     hints = tuple(hint.replace("\n", " ") for hint in text["hints"].split("\n\n"))
     test = text["test"] + "\n" if "test" in text else ""
@@ -217,12 +220,12 @@ def words(name, beside):
 
 
 def notebook_tasks(beside, **asked):
-    """Tasks of functions that stay in their notebook: {name: Task}.
+    """Return the Tasks of functions that stay in their notebook, {name: Task}.
 
     asked: NAME=(right, cases, what it returns, a dict of other options if there are any).
 
-    Their texts, in the names of the notebook, stand in notebook_functions.txt beside the module, each below its name;
-    below "NAME: mistakes" the table of mistakes, made out of the course's own.
+    Their texts, in the names of the notebook, are in notebook_functions.txt beside the module, each below its name;
+    below "NAME: mistakes" is the table of mistakes, which are made out of the course's own function.
     """
     texts, tasks = sections("notebook_functions", beside), {}
     for name, (right, cases, asks, *options) in asked.items():
@@ -239,12 +242,12 @@ def _is_same(returned, expected, same, tolerance):
 
 
 def is_run(value):
-    """Tell whether a value is a run of many samples."""
+    """Return True if a value is a run of many samples."""
     return np.ndim(value) == 1 and len(value) > _LONG
 
 
 def short_text(value):
-    """A value as a student writes it, short."""
+    """Return a value as a student would write it, in short."""
     if value is None:
         return "None"
     if isinstance(value, tuple):

@@ -13,7 +13,7 @@ _LINK_COLOURS = ("#8C8C8C", COLOURS["blue"], COLOURS["orange"])  # column, upper
 
 
 class FrameView:
-    """A coordinate frame in 3-D axes: x orange, y green, z blue; `update(T)` moves it.
+    """A coordinate frame in 3-D axes, with x orange, y green and z blue; `update(T)` moves it.
 
     Args: ax: 3-D axes; T: (4, 4) transform of the frame; name: text at its origin; length: of its axes, in the unit
     of the plot.
@@ -31,7 +31,7 @@ class FrameView:
         self.update(T)
 
     def update(self, T):
-        """Place the frame. T: (4, 4), takes coordinates of this frame to those of the axes."""
+        """Move the frame. T: (4, 4), takes coordinates of this frame to those of the axes."""
         origin, R = T[:3, 3], T[:3, :3]
         for k in range(3):
             end = origin + self._length * R[:, k]
@@ -45,7 +45,7 @@ class ArmView:
 
     Args:
         ax: 3-D axes (`new_figure(projection="3d")`). arm: Arm.
-        q: (3,) rad, first pose. frames: also draw frames 0 to 3 (True), or those listed, such as (0, 3).
+        q: (3,) rad, first pose. frames: True also draws frames 0 to 3; a list such as (0, 3) draws those.
         thickness: of the links, points.
 
     Attributes: q; points: what is drawn, foot, shoulder, elbow and tip, (4, 3) m.
@@ -76,7 +76,7 @@ class ArmView:
         self.place(frames(self.arm, self.q))
 
     def place(self, T):
-        """Move the parts to T (4, 4, 4), the transforms of frames 0 to 3 to the base, right or wrong."""
+        """Move the parts to T (4, 4, 4), the transforms of frames 0 to 3 to the base, whether right or wrong."""
         self.points = corners = T[:, :3, 3]
         parts = [(pair, corners[k : k + 2]) for k, pair in enumerate(self._links)]
         half = 0.08 * self.arm.reach
@@ -91,13 +91,13 @@ class ArmView:
                 view.update(T[k])
 
     def trail(self, points):
-        """Draw a path of the tip. points: (n, 3) m."""
+        """Draw a path of the tip through points (n, 3) m."""
         self.ax.plot(*points.T, "-", color=COLOURS["green"], linewidth=1.6, zorder=3)
 
     def ellipsoids(self, names):
-        """Draw the "velocity ellipsoid" and the "force ellipsoid" at the tip, each if it is named.
+        """Draw those of the "velocity ellipsoid" and the "force ellipsoid" at the tip that are in `names`.
 
-        At a singular pose that of the forces has no end and is left out.
+        At a singular pose the ellipsoid of the forces is infinite and is left out.
         """
         J = jacobian(self.arm, self.q)[:3]
         shapes = {"velocity ellipsoid": (0.25 * J, COLOURS["sky"])}
@@ -140,7 +140,7 @@ def _stage(ax, arm):
 class SideView:
     """The arm in the vertical plane through its column and a heading: radius to the right, height upwards.
 
-    `update(q)` moves it; the heading is joint 1's own.
+    `update(q)` moves it; the heading is that of joint 1.
 
     Args: ax: 2-D axes; arm: Arm; colour: of the links; label: for the legend.
     Attributes: points: what is drawn, shoulder, elbow, tip as (radius, height), (3, 2) m.

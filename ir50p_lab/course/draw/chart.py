@@ -1,7 +1,7 @@
-"""Curves over time as a picture of lines (SVG), which Python writes in some milliseconds: no figure is drawn.
+"""Curves over time as a picture of lines (SVG), which Python writes in some milliseconds without drawing a figure.
 
 Every picture holds all that is shown: a browser that leaves some out is right again with the next one, and a page
-without a kernel keeps the last.
+without a kernel keeps the last one.
 """
 
 import html
@@ -19,10 +19,10 @@ _LOCATOR = MaxNLocator(7, steps=[1, 2, 5, 10])
 
 
 class Chart(ipywidgets.HTML):
-    """Panels of curves over time; `frames` counts the pictures, the first, without curves, included.
+    """Panels of curves over time; `frames` counts the pictures, including the first, which has no curves.
 
-    Args: panels: of each the arguments of `_panel` from `place` on. window: s that they hold; height: pixels, the width
-    being 1000; description: what screen readers say.
+    Args: panels: for each the arguments of `_panel` from `place`. window: how many s they hold; height: pixels, for a
+    width of 1000; description: what screen readers say.
     """
 
     def __init__(self, panels, *, window, height, description):
@@ -36,7 +36,7 @@ class Chart(ipywidgets.HTML):
         self.draw(np.empty((0, 1 + max(columns))))
 
     def draw(self, rows, marks=()):
-        """Show rows (n, k), the time first (s), and a dotted line at the times `marks`."""
+        """Show rows (n, k), with the time (s) first, and a dotted line at each of the times `marks`."""
         end = max([self._window, *rows[-1:, 0]])
         times = _ticks(end - self._window, end)
         panels = (_panel(rows, marks, end - self._window, end, times, **panel) for panel in self._panels)

@@ -10,7 +10,7 @@ from ir50p_lab.errors import InputError
 
 @dataclass(frozen=True)
 class Slider:
-    """A slider from `min` to `max` in steps of `step`, at `start`; whole numbers throughout stay whole (int)."""
+    """A slider from `min` to `max` in steps of `step`, at `start`; if all are whole, its values are whole (int)."""
 
     min: float
     max: float
@@ -28,12 +28,15 @@ class Slider:
 
 
 def slider(min, max, step, start, *, label=None, unit=""):
-    """Describe one slider for `live`: its range, step and start, the text beside it and the unit behind it."""
+    """Describe one slider for `live`: its range, step and start, the text before it and the unit behind it.
+
+    Returns: Slider.
+    """
     return Slider(min, max, step, start, label, unit)
 
 
 def make_control(name, spec, label_width, moved):
-    """The widget that holds the value, and the row that shows it; `moved()` is called after each change."""
+    """Return the widget that holds the value, and the row that shows it; `moved()` is called after each change."""
     style, layout = {"description_width": label_width}, {"width": f"calc({label_width} + 230px)"}
     if isinstance(spec, list | dict) and spec:
         control = widgets.Dropdown(options=spec, description=name, style=style, layout=layout)
@@ -54,12 +57,12 @@ def make_control(name, spec, label_width, moved):
 
 
 def value_of(control):
-    """The value of a control, without the rounding noise of the browser's steps (1.0599999999999998 for 1.06)."""
+    """Return the value of a control without the rounding noise of the browser's steps (1.0599999999999998 for 1.06)."""
     return round(control.value, 9) if isinstance(control, widgets.FloatSlider) else control.value
 
 
 def on_scale(control, value):
-    """The value nearest to `value` at which a slider can stand."""
+    """Return the value nearest to `value` at which a slider can stand."""
     steps = round((value - control.min) / control.step)
     return type(control.value)(min(max(control.min + steps * control.step, control.min), control.max))
 
@@ -74,7 +77,7 @@ def refuse_bad_value(name, value, controls):
 
 
 def close_all(widget):
-    """End a widget and those inside it, which the browser and the kernel would keep for ever."""
+    """Close a widget and those inside it, which the browser and the kernel would otherwise keep for ever."""
     for child in getattr(widget, "children", ()):
         close_all(child)
     widget.layout.close()

@@ -7,7 +7,7 @@ from ir50p_lab.home import PROJECT
 
 
 class Drawing:
-    """A drawing, shown when it is the last line of a cell. data: its SVG, whose title says what it shows."""
+    """A drawing, shown if it is the last line of a cell. data: its SVG, whose title says what it shows."""
 
     def __init__(self, data):
         self.data = data
@@ -19,5 +19,5 @@ class Drawing:
 
 
 def drawing(name):
-    """The Drawing of this name."""
+    """Return the Drawing of this name."""
     return Drawing((PROJECT / "data" / "drawings" / f"{name}.svg").read_text("utf-8"))

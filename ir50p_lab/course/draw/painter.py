@@ -15,13 +15,13 @@ DRAWING = threading.RLock()
 
 
 class Painter:
-    """Draws `figure` again and again in a fraction of its time, by matplotlib's blitting.
+    """Draws `figure` again and again in a fraction of the usual time, by matplotlib's blitting.
 
-    An artist that has changed once is taken for one that moves: it becomes `animated`, and so does all that lies above
-    it in its axes; where a grid lies above it, nothing does, and all is drawn each time. The rest, ticks and grid
-    included, is kept as pixels and drawn anew only when matplotlib says that it is stale (a new text in a legend makes
-    it so each time); of a turn of a 3-D view it says nothing: set `axes.stale`. The layout is computed once and then
-    held, so that nothing jumps.
+    An artist that has changed once is assumed to move: it becomes `animated`, and so does everything that lies above
+    it in its axes. If a grid lies above it, nothing does, and everything is drawn each time. The rest, ticks and grid
+    included, is kept as pixels and drawn anew only if matplotlib says that it is stale (a new text in a legend makes
+    it so each time). When a 3-D view is turned, matplotlib does not say so: set `axes.stale`. The layout is computed
+    once and then held, so that nothing jumps.
 
     Attributes: backgrounds: how often the background was drawn (for tests and measurements).
     """
@@ -34,7 +34,7 @@ class Painter:
         self._background = self._empty = None
 
     def rgba(self):
-        """The figure as it is now: (height, width, 4) uint8, valid until the next call."""
+        """Return the figure as it is now, (height, width, 4) uint8, valid until the next call."""
         figure, canvas = self.figure, self.figure.canvas
         groups = [_parts(one) for one in (*sorted(figure.axes, key=lambda ax: ax.get_zorder()), figure)]
         empty = sum(_is_empty(artist) for parts in groups for artist in parts)
@@ -61,12 +61,12 @@ class Painter:
         return np.asarray(canvas.buffer_rgba())
 
     def png(self):
-        """The figure as it is now, as the bytes of a PNG file."""
+        """Return the figure as it is now, as the bytes of a PNG file."""
         return encode_png(self.rgba())
 
 
 def encode_png(image):
-    """PNG file of an image (height, width, 3 or 4) uint8, without its opacity; some times as fast as by Pillow."""
+    """Return an image (height, width, 3 or 4) uint8 as a PNG file without opacity, much faster than by Pillow."""
     try:
         import cv2
     except ImportError:  # in a browser tab

@@ -18,13 +18,13 @@ from ir50p_lab.errors import InputError
 
 
 class PictureView(widgets.VBox):
-    """A picture, shown when it is the last line of a cell; a line under it holds what a click has said.
+    """A picture, shown if it is the last line of a cell; a line under it holds what a click has said.
 
     Args:
         picture: (h, w, 3) bytes, red green blue, or (h, w) bool, a mask.
-        on_click: f(x, y), called with the pixel that was clicked: column and row. May print or return a text: it
+        on_click: f(x, y), called with the pixel that was clicked, column and row. It may print or return a text, which
             appears under the picture, and so does its error.
-        alt: what the picture shows, for those who do not see it. source: where it is from, in words.
+        alt: what the picture shows, for those who cannot see it. source: where it comes from, in words.
 
     Attributes: picture, and circles, (x, y, radius, colour) each, px: setting one of them shows it; canvas; status.
     Raises InputError for what is not a picture.
@@ -41,7 +41,7 @@ class PictureView(widgets.VBox):
 
     @property
     def picture(self):
-        """The picture that is shown."""
+        """The picture that is shown; set it to show another."""
         return self._picture
 
     @picture.setter
@@ -59,7 +59,7 @@ class PictureView(widgets.VBox):
 
     @property
     def circles(self):
-        """What is drawn over it: (x, y, radius, colour) each, px."""
+        """The circles that are drawn over the picture: (x, y, radius, colour) each, px."""
         return self._circles
 
     @circles.setter

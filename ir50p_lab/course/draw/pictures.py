@@ -1,4 +1,4 @@
-"""Pictures in figures: pixel for pixel, and where they are from."""
+"""Pictures in figures: pixel for pixel, and with where they come from."""
 
 from ir50p_lab.course.draw.style import new_figure
 
@@ -16,7 +16,7 @@ def show_picture(ax, picture, title="", **options):
 
 
 def pictures_figure(*titled, width=9.6, source=STAMP):
-    """Pictures side by side: each (title, picture). source: where they are from, in words. Returns: LabFigure."""
+    """Return a LabFigure with pictures side by side, each (title, picture). source: where they come from, in words."""
     rows, columns = titled[0][1].shape[:2]
     height = 0.55 + width / len(titled) * rows / columns
     figure = new_figure(width, min(height, 5.2), cols=len(titled), note=source)

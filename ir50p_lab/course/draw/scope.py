@@ -9,7 +9,7 @@ _MOST = 300  # largest number of samples drawn: about one for every pixel column
 
 
 class Scope(Chart):
-    """Three joints side by side: angle with its dashed set point above, PWM below, the last `window` seconds.
+    """Three joints side by side: the angle with its dashed set point above, PWM below, for the last seconds.
 
     window: s; badge: a word in the corner, such as "simulated". `frames` counts what `show` has sent.
     """
@@ -28,7 +28,7 @@ class Scope(Chart):
         super().__init__(panels, window=float(window), height=360, description=words)
 
     def show(self, t, q, reference, u, marks=()):
-        """Show these samples; what is older than the window is left out.
+        """Show these samples; those older than the window are left out.
 
         Args: t: (n,) s; q, reference: (n, 3) rad; u: (n, 3) PWM counts; marks: times of dotted
             lines, such as cuts of the drive, s.

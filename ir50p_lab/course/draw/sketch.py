@@ -1,4 +1,4 @@
-"""What sketches of the arm in a plane are made of: lines, names, angles; the plane seen from above."""
+"""What sketches of the arm in a plane are made of: lines, names, angles; and the plane seen from above."""
 
 import numpy as np
 
@@ -6,18 +6,18 @@ from ir50p_lab.course.draw.style import COLOURS, subplots
 
 
 def line(ax, points, style="-", colour="dark", **options):
-    """A line through points (n, 2), in matplotlib's style. Returns it."""
+    """Draw a line through points (n, 2) in matplotlib's style. Returns it."""
     return ax.plot(*np.transpose(points), style, color=COLOURS[colour], **options)[0]
 
 
 def name(ax, place, text, colour="dark"):
-    """A word in the middle of a place (2,), over what is there."""
+    """Write a word centred on a place (2,), above everything else there."""
     box = {"fc": "w", "ec": "w", "pad": 1}
     ax.text(*place, text, color=COLOURS[colour], size=12, ha="center", va="center", bbox=box, zorder=6)
 
 
 def arc(ax, centre, start, end, radius, colour, text="", out=1.35, *, arrow=True):
-    """An angle from start to end (rad), its name at `out` radii; an angle that has a sign gets an arrow."""
+    """Draw an angle from start to end (rad), with its name at `out` radii; an angle that has a sign gets an arrow."""
     angles = np.linspace(start, end, 40)
     points = centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
     line(ax, points, "-", colour, linewidth=2)
@@ -28,7 +28,7 @@ def arc(ax, centre, start, end, radius, colour, text="", out=1.35, *, arrow=True
 
 
 def from_above(width=7.2, height=5.0, title="From above"):
-    """The table seen from above, with the column of the arm: LabFigure, axes in m."""
+    """Draw the table seen from above, with the column of the arm. Returns: LabFigure, with axes in m."""
     figure, ax = subplots(width, height)
     ax.plot(0, 0, "s", color=COLOURS["dark"], ms=12)
     ax.set(aspect="equal", adjustable="datalim", xlabel="x, ahead [m]", ylabel="y, to the left [m]", title=title)

@@ -25,17 +25,17 @@ SETPOINT = {"color": COLOURS["dark"], "linestyle": "--", "linewidth": 1.2}
 
 
 def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, sharex=False, width_ratios=None, note=""):
-    """A new figure in the style of the book, with its axes in `figure.axes` (row by row).
+    """Return a new figure in the style of the book, with its axes in `figure.axes` (row by row).
 
     Dashed lines are for set points (`**SETPOINT`), dots or thin grey for measurements, lines for models.
 
     Args:
         width, height: inches at 100 dots per inch; the default height fits the rows.
-        rows, cols: grid of axes. projection: None (2-D), "3d", or a list with one of these per axes.
-        sharex: the axes of a column share their x limits. width_ratios: relative widths of the columns.
-        note: small words in the lower right corner, below the axes: where the data are from.
+        rows, cols: grid of axes. projection: None (2-D), "3d", or a list with one of these for each of the axes.
+        sharex: whether the axes of a column share their x limits. width_ratios: relative widths of the columns.
+        note: small words in the lower right corner, below the axes: where the data come from.
 
-    Returns: LabFigure. It belongs to nobody but you: pyplot does not know it, nothing shows it twice.
+    Returns: LabFigure. It belongs to nobody but you: pyplot does not know it, and nothing shows it twice.
     """
     kinds = [projection] * (rows * cols) if projection is None or isinstance(projection, str) else list(projection)
     if height is None:
@@ -64,27 +64,27 @@ def new_figure(width=9.0, height=None, *, rows=1, cols=1, projection=None, share
 
 
 def subplots(*size, **options):
-    """Figure and axes of `new_figure`, for unpacking: `figure, left, right = subplots(cols=2)`."""
+    """Return figure and axes of `new_figure`, for unpacking: `figure, left, right = subplots(cols=2)`."""
     figure = new_figure(*size, **options)
     return figure, *figure.axes
 
 
 def alarm(text):
-    """A sentence in red as HTML, on a ground of its own: it can be read in a dark notebook, too."""
+    """Return a sentence in red as HTML, on a background of its own, so that it can be read in a dark notebook, too."""
     return f'<span style="color: #8E1B0E; background: #FDECEA; padding: 0 4px">{html.escape(text)}</span>'
 
 
 def origin(recording):
-    """Where a recording is from, in two words: 'simulated arm', 'the real arm' or 'origin unknown'."""
+    """Return where a recording comes from, in two words: 'simulated arm', 'the real arm' or 'origin unknown'."""
     if "simulated" not in recording.header:
         return "origin unknown"
     return "simulated arm" if recording.simulated else "the real arm"
 
 
 def colour_map(ax, x, y, values, norm, label):
-    """Colours of values (m, n) over an evenly spaced grid x (n,), y (m,). Returns a ring, to be put on one place.
+    """Colour values (m, n) over an evenly spaced grid x (n,), y (m,). Returns a ring, to be put on one place.
 
-    Coloured once, and above the axis lines of map and bar: both save time at every redraw under a slider.
+    They are coloured once, and above the axis lines of map and bar: both save time at every redraw under a slider.
     """
     half_x, half_y = (x[1] - x[0]) / 2, (y[1] - y[0]) / 2
     extent = (x[0] - half_x, x[-1] + half_x, y[0] - half_y, y[-1] + half_y)

@@ -6,7 +6,7 @@ STAMP = "simulated, not measured"
 
 
 def curves(t, lines, labels, ylabel, targets=()):
-    """Lines (k, n) over time (n,) s, each with its label; targets: dashed levels. LabFigure."""
+    """Draw lines (k, n) over time (n,) s, each with its label. targets: dashed levels. Returns: LabFigure."""
     figure, ax = subplots(8.6, 3.2)
     for target in targets:
         ax.axhline(target, **SETPOINT)

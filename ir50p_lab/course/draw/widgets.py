@@ -36,14 +36,14 @@ def live(figure, update, **controls):
     """Show `figure` with sliders; each change calls `update(**values)` and redraws.
 
     Args:
-        figure: LabFigure, from `style.new_figure`.
-        update: changes artists in place (`line.set_data(...)`); gets every control by its name. May print or
-            return a text: it appears in the line under the figure. If the text takes time, return a function
+        figure: LabFigure, from `new_figure`.
+        update: changes artists in place (`line.set_data(...)`); gets every control by its name. It may print or
+            return a text, which appears in the line under the figure. If the text takes time, return a function
             that returns it: it is called once the picture is on its way.
         controls: at least one; name=(min, max, step, start) or name=slider(...), name=[choices] or {label: choice}
             for a menu.
 
-    Returns: LivePanel, shown when it is the last line of a cell.
+    Returns: LivePanel, shown if it is the last line of a cell.
     Raises InputError for a control that makes no sense, and whatever the first `update` raises.
     """
     return LivePanel(figure, update, controls)
@@ -87,13 +87,13 @@ class LivePanel(widgets.VBox):
 
     @property
     def values(self):
-        """What the controls say now: name -> value."""
+        """The present values of the controls: name -> value."""
         return {name: value_of(control) for name, control in self.controls.items()}
 
     def set(self, **values):
-        """Move controls from Python, redraw once, and raise what `update` raises.
+        """Move controls from Python and redraw once.
 
-        Raises InputError for an unknown name or a value off the scale.
+        Raises InputError for an unknown name or a value off the scale, and whatever `update` raises.
         """
         for name, value in values.items():
             refuse_bad_value(name, value, self.controls)
@@ -180,7 +180,7 @@ class LivePanel(widgets.VBox):
 
 
 def explain(error):
-    """The error in one line, with the line of the caller's function it came from."""
+    """Return the error in one line, with the line of the caller's function from which it came."""
     ours = str(Path(__file__).parent)
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if not frame.filename.startswith(ours)]
     where = f" (line {frames[0].lineno} in {frames[0].name})" if frames else ""

@@ -1,4 +1,4 @@
-"""The spinning arm as a governor, a picture of notebook 05 that moves."""
+"""The spinning arm as a governor: a picture of notebook 05 that moves."""
 
 import numpy as np
 
@@ -8,9 +8,9 @@ from ir50p_lab.modelling.dynamics import gravity
 
 
 class GovernorView:
-    """The arm from the side, and beside it the shoulder torque that would hold each q2 while joint 1 spins.
+    """The arm from the side, and next to it the shoulder torque that would hold each q2 while joint 1 spins.
 
-    The arm is drawn where it settles: the highest pose that it is thrown out of upwards, or hanging down.
+    The arm is drawn where it settles: in the highest pose from which it is thrown upwards, or hanging down.
 
     Args: arm: Arm; q (n, 3) rad: poses from hanging down to level. Attributes: figure, to be shown with `live`.
     """

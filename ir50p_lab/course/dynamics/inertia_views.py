@@ -43,7 +43,7 @@ class InertiaView:
 
 
 def centres(arm, q, places):
-    """The arm from the side and a dot for each of places (3, 3) m, a row for each link: LabFigure (Figure 1.10)."""
+    """Draw the arm from the side and a dot for each of places (3, 3) m, one row per link: LabFigure (Figure 1.10)."""
     figure, plane = subplots(6.4, 4.6)
     SideView(plane, arm, q)
     radius = places[:, :2] @ [np.cos(q[0]), np.sin(q[0])]
@@ -56,7 +56,7 @@ def centres(arm, q, places):
 
 
 def kilograms(arm, q, angles, masses):
-    """The arm from the side at q, and how heavy its tip is by direction: LabFigure.
+    """Draw the arm from the side at q, and how heavy its tip is in each direction. Returns: LabFigure.
 
     angles: (n,) rad in that plane, from outwards to upwards; masses: {label: kg (n,)}, the heaviest first.
     """

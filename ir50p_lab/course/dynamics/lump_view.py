@@ -8,7 +8,10 @@ from ir50p_lab.course.draw.style import COLOURS, subplots
 
 
 def on_a_circle(arm, q):
-    """The arm at q (3,) rad from the side, the circle of the forearm's centre, force and lever: LabFigure."""
+    """Draw the arm at q (3,) rad from the side, the circle of the forearm's centre, force and lever.
+
+    Returns: LabFigure.
+    """
     figure, ax = subplots(6.4, 5.0)
     shoulder, elbow, tip = SideView(ax, arm, q).points
     along = (tip - elbow) / arm.l[2]

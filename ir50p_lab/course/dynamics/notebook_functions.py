@@ -10,13 +10,13 @@ from ir50p_lab.modelling import forward_dynamics, gravity, inverse_dynamics, loa
 
 
 def centres(T, lc):
-    """Centres of mass of the three links, (3, 3) m, a row for each link."""
+    """Return the centres of mass of the three links, (3, 3) m, one row per link."""
     along = T[0][:3, 2], T[2][:3, 0], T[3][:3, 0]
     return np.array([T[k][:3, 3] + lc[k] * along[k] for k in range(3)])
 
 
 def heaviness(J, M, direction):
-    """How heavy the tip is along a unit vector, pushed that way and free to slip aside, kg; inf where nothing starts.
+    """Return how heavy the tip is, kg, pushed along a unit vector and free to slip aside; inf if nothing starts.
 
     1 / (d^T J M^-1 J^T d)
     """
@@ -25,23 +25,23 @@ def heaviness(J, M, direction):
 
 
 def shoulder_holds(q, load):
-    """Torque (N m) of the shoulder that holds the arm in the pose q, with a load (kg) at its tip."""
+    """Return the torque (N m) of the shoulder that holds the arm in the pose q, with a load (kg) at its tip."""
     arm = load_arm()
     return gravity(arm, q)[1] + load * arm.g * _of_tip(arm, q)[2, 1]
 
 
 def lump_torque(q, qd):
-    """Torques (3,) N m that carry the forearm, as a lump at its centre, while all joints keep their speeds."""
+    """Return torques (3,) N m that carry the forearm, as a lump at its centre, while all joints keep their speeds."""
     return _lump(q, qd, _centre)
 
 
 def torque(q, qd, qdd):
-    """The torques (3,) N m of a motion, without friction    (1.74)."""
+    """Return the torques (3,) N m of a motion, without friction    (1.74)."""
     return inverse_dynamics(load_arm().without_friction(), q, qd, qdd)
 
 
 def acceleration(q, qd, tau):
-    """The accelerations (3,) rad/s² that torques (3,) N m make, without friction."""
+    """Return the accelerations (3,) rad/s² that torques (3,) N m make, without friction."""
     arm = load_arm().without_friction()
     return forward_dynamics(arm.theta, q, qd, tau, g=arm.g)
 

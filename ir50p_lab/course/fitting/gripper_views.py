@@ -12,12 +12,15 @@ from ir50p_lab.signals import fourier
 
 
 def with_gripper(arm):
-    """The arm with a gripper. Simulated: of 0.3 kg, which the student does not know. On a real arm it is screwed on."""
+    """Return the arm with a gripper.
+
+    A simulated one weighs 0.3 kg, which the student does not know; on a real arm it is screwed on.
+    """
     return arm.with_payload(0.3)
 
 
 def go(gripped, controller, reference, seconds):
-    """The loop of 08, from the rest pose, on the arm that answers, with its gripper: a Recording."""
+    """Run the loop of 08, from the rest pose, on the arm that answers, with its gripper. Returns: Recording."""
     from tqdm.auto import tqdm
 
     with arm_at_rest(gripped, "calibration") as bench:
@@ -29,9 +32,9 @@ def go(gripped, controller, reference, seconds):
 
 
 def motions(arm):
-    """Two motions of many waves, slow enough for an arm with a gripper, and their seconds: pairs (reference, seconds).
+    """Return two motions of many waves, slow enough for an arm with a gripper, as pairs (reference, seconds).
 
-    Four seconds to the first pose, one of waiting, then the waves.
+    Each takes four seconds to the first pose and waits for one; then come the waves.
     """
     made = []
     for number, periods in ((1, 5), (2, 2)):
@@ -47,31 +50,31 @@ def _from_rest(arm, waves):
 
 
 def bare_run(arm, controller):
-    """The first minute of the first motion without the gripper, simulated: a Recording."""
+    """Return the first minute of the first motion without the gripper, simulated: a Recording."""
     with SimulatedBench(arm, q0=rest_pose(arm), record_to=False) as bench:
         return bench.follow(controller, motions(arm)[0][0], 60)
 
 
 def gripper_run(arm):
-    """110 s of the first motion with the gripper on, on the simulated arm: a Recording."""
+    """Return 110 s of the first motion with the gripper on, on the simulated arm: a Recording."""
     motion, seconds = motions(arm)[0]
     with SimulatedBench(with_gripper(arm), q0=rest_pose(arm), record_to=False) as bench:
         return bench.follow(PID(1000, 1000, 40, limit_pwm=255), motion, seconds).between(5, seconds)
 
 
 def true_theta(arm, recording):
-    """The theta (3, 20) of the simulated copy of an arm, its friction as drawn; None where the recording is real."""
+    """Return theta (3, 20) of an arm's simulated copy, its friction as drawn; None if the recording is real."""
     return copy_theta(arm) if recording.simulated else None
 
 
 def copy_theta(arm):
-    """The true theta (3, 20) of the simulated copy of an arm, in its own counts."""
+    """Return the true theta (3, 20) of the simulated copy of an arm, in its own counts."""
     gain = SimulatedBench(arm, record_to=False).plant.unit.motor_gain
     return arm.theta_pwm / np.broadcast_to(gain, 3)[:, None]
 
 
 def loop_figure(q, u):
-    """The push (n,) counts of the elbow over its angle (n,) rad: LabFigure."""
+    """Draw the push (n,) counts of the elbow over its angle (n,) rad. Returns: LabFigure."""
     figure, ax = subplots(6.4, 3.4)
     ax.plot(q, u, ".", ms=2, color=COLOURS["blue"])
     ax.set(xlabel="angle of the elbow [rad]", ylabel="push [PWM counts]", title="Above: upwards; below: downwards")

@@ -17,7 +17,10 @@ _UNSEEN, _JUDGES = (101, 102), (2, 3, 4)  # seeds of the contest's arms; kept mo
 
 
 def follow(arm, controller, reference, seconds):
-    """From rest to the beginning of a reference, then along it for so many seconds: a Recording of the latter."""
+    """Move from rest to the beginning of a reference, then follow it for so many seconds, which are recorded.
+
+    Returns: Recording.
+    """
     to_its_beginning = quintic(rest_pose(arm), np.array(reference(0.0)[0]), duration=4)
     with arm_at_rest(arm, "calibration") as bench:
         bench.follow(controller, to_its_beginning, 5, record=False)
@@ -25,15 +28,18 @@ def follow(arm, controller, reference, seconds):
 
 
 def simulated(arm, controller, reference, seconds, **bench):
-    """The same on a simulated arm, from the beginning of the reference; nothing is kept on disk: a Recording."""
+    """Do the same on a simulated arm, from the beginning of the reference: a Recording, not kept on disk."""
     bench = SimulatedBench(arm, q0=reference(0.0)[0], record_to=False, **bench).open()
     return bench.follow(controller, reference, seconds)
 
 
 def waves(arm, x):
-    """A motion of 110 s from a table x (3, 11): middle poses, five a and five b (4.2); None: it leaves the limits.
+    """Return a motion of 110 s, or None if it leaves the limits.
 
-    Joints stay 0.2 rad within theirs, and below 0.8 of the speed of their motors; elbow and tip 0.1 m above the table.
+    x: a table (3, 11): middle poses, five a and five b (4.2).
+
+    Joints keep 0.2 rad from their limits and below 0.8 of the speed of their motors; elbow and tip stay 0.1 m above the
+    table.
     """
     room = {"arm": arm, "max_joint_speed": 0.8 * np.array(arm.actuators.no_load_speed), "table": 0.1, "margin": 0.2}
     try:
@@ -43,7 +49,10 @@ def waves(arm, x):
 
 
 def contest_score(arm, controller, motion):
-    """Percent of the worst joint on three unseen motions, by a model of 60 s of a motion; the worst of two arms."""
+    """Return the fit of the worst joint, in percent, on three unseen motions, for the worse of two arms.
+
+    The model is made from 60 s of `motion`.
+    """
     worst = []
     for seed in _UNSEEN:
         theta, _ = fit_rows(*columns(simulated(arm, controller, motion, 60, seed=seed)))
@@ -54,7 +63,10 @@ def contest_score(arm, controller, motion):
 
 
 def suspects(arm, controller):
-    """Simulated arms that have all faults, or lack one: {name: (Recording to learn from, Recording to judge by)}."""
+    """Return recordings of simulated arms that have all faults, or lack one.
+
+    Returns: {name: (Recording to learn from, Recording to judge by)}.
+    """
     none, like_ours = (0, 0, 0), ArmInstance(spread=0)
     smooth = replace(arm, friction=replace(arm.friction, fs=arm.friction.fc))
     cases = {
@@ -71,7 +83,10 @@ def suspects(arm, controller):
 
 
 def validation_figure(u, predicted, span):
-    """Measured and predicted pushes (n, 3) of the three joints over a span of samples (Figure 4.11): LabFigure."""
+    """Draw measured and predicted pushes (n, 3) of the joints over a span of samples (Figure 4.11).
+
+    Returns: LabFigure.
+    """
     figure, here = new_figure(9.6, 5.0, rows=3, sharex=True), slice(*span)
     t = 0.01 * np.arange(len(u))[here]
     for joint, ax in enumerate(figure.axes):

@@ -11,9 +11,9 @@ ACTS = [0, 1, 4, 5, 10, 11, 16], [1, 2, 3, 4, 5, 8, 9, 12, 13, 17], [3, 4, 5, 9,
 
 
 def columns(recording, **steps):
-    """Tables (n, 3, 20) by the student's `regressor`, pushes (n, 3) counts, and which samples tell something (n, 3).
+    """Return tables (n, 3, 20) by the student's `regressor`, pushes (n, 3) counts, and which samples are used (n, 3).
 
-    steps: options of `process` other than a delay of 20 ms and slow samples, under 0.05 rad/s, left out.
+    steps: options of `process` besides a delay of 20 ms and leaving out slow samples, under 0.05 rad/s.
     """
     motion = process(recording, **{"delay": 0.02, "slow": 0.05} | steps)
     rows = zip(motion.q, motion.qd, motion.qdd, np.sign(motion.qd), strict=True)
@@ -21,7 +21,10 @@ def columns(recording, **steps):
 
 
 def fit_rows(Y, u, use, acts=ACTS):
-    """A theta (3, 20) with a row for each joint, and its errors (nan: not fitted), by the student's `least_squares`."""
+    """Fit theta (3, 20), one row per joint, by the student's `least_squares`.
+
+    Returns: theta and its errors (nan: not fitted).
+    """
     theta, errors = np.zeros((3, 20)), np.full((3, 20), np.nan)
     for joint, here in enumerate(acts):
         rows = use[:, joint]
@@ -30,7 +33,7 @@ def fit_rows(Y, u, use, acts=ACTS):
 
 
 def mass_of(theta, q):
-    """The mass matrix (3, 3) in the pose q that a theta believes in, by the student's `regressor`."""
+    """Return the mass matrix (3, 3) that a theta implies in the pose q, by the student's `regressor`."""
     still = np.zeros(3)
     rest = np.sum(my_robot.regressor(q, still, still, still) * theta, axis=1)
     pushed = [np.sum(my_robot.regressor(q, still, one, still) * theta, axis=1) - rest for one in np.eye(3)]
@@ -38,13 +41,13 @@ def mass_of(theta, q):
 
 
 def badge(*names):
-    """Whose functions moved an arm: the weakest of "yours", "on loan" and "the course's"."""
+    """Return whose functions moved an arm: the weakest of "yours", "on loan" and "the course's"."""
     owners = {my_robot.whose(name) for name in names}
     return next(words for words in ("the course's", "on loan", "yours") if words in owners)
 
 
 def table_figure(Y):
-    """Which columns of a table (3, 20) are filled in which row: LabFigure."""
+    """Draw which columns of a table (3, 20) are filled in which row. Returns: LabFigure."""
     figure, ax = subplots(8.6, 2.2)
     ax.imshow(0.6 * np.sign(Y), cmap="RdBu", vmin=-1, vmax=1, aspect="auto")
     ax.grid(False)
@@ -63,7 +66,10 @@ PARTS = {  # columns of each part of a push, and the colour of its curve
 
 
 def parts_of_push(Y, theta, u, joint, span):
-    """What the parts of a model add to the push of a joint, over the samples of a span, with the push: LabFigure."""
+    """Draw what the parts of a model add to the push of a joint over a span of samples, and the push.
+
+    Returns: LabFigure.
+    """
     figure, ax = subplots(9.6, 3.6)
     here = slice(*span)
     t = 0.01 * np.arange(len(u))[here]
@@ -78,7 +84,7 @@ def parts_of_push(Y, theta, u, joint, span):
 
 
 def mass_figure(models, truth=None):
-    """The shoulder's own inertia, and the least eigenvalue of the mass matrix, over the elbow: LabFigure.
+    """Draw the shoulder's own inertia, and the least eigenvalue of the mass matrix, over the elbow. Returns: LabFigure.
 
     Args: models: {label: theta}; truth: a theta, drawn dashed.
     """

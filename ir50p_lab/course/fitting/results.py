@@ -8,7 +8,7 @@ from ir50p_lab.identification import fit, process, regressor, validate
 
 
 def ablation_figure(names, fits):
-    """Fits of the three joints, (n, 3) %, from top to bottom, one name for each line: LabFigure."""
+    """Draw fits of the three joints, (n, 3) %, from top to bottom, with one name for each line. Returns: LabFigure."""
     figure, ax = subplots(9.6, 1.3 + 0.36 * len(names))
     y = np.arange(len(names))[::-1]
     ax.set_prop_cycle(color=JOINTS, marker=["o", "s", "^"])
@@ -20,7 +20,7 @@ def ablation_figure(names, fits):
 
 
 def whiteness_figure(tests):
-    """Autocorrelation of the residuals of joint 2 for several models. Returns: LabFigure.
+    """Draw the autocorrelation of the residuals of joint 2 for several models. Returns: LabFigure.
 
     Args: tests: {name: Whiteness}, of residuals 10 ms apart.
     """
@@ -36,7 +36,9 @@ def whiteness_figure(tests):
 
 
 class CutoffView:
-    """Acceleration of joint 1 by two filters, and the fit of the model over their cut-off. Attributes: figure, fits.
+    """The acceleration of joint 1 by two filters, and the fit of the model over their cut-off.
+
+    Attributes: figure, fits.
 
     Args: train, valid: Recordings; cutoffs_hz: of the curves; delay: s; span: (s, s) of valid that is drawn.
     fits: {"causal" or "zero-phase": (m, 3) %}.

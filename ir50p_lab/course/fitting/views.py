@@ -11,9 +11,9 @@ from ir50p_lab.modelling import IR50P
 
 
 def two_copies(arm, controller, reference, seconds=8):
-    """A run of one simulated copy of the arm; its commands sent blindly to another copy; the other copy controlled.
+    """Run a simulated copy of the arm, send its commands blindly to another copy, and control the other copy as well.
 
-    Returns: three Recordings.
+    Returns: three Recordings, in this order.
     """
     q0, runs = reference(0.0)[0], []
     for seed in (0, 1):
@@ -30,11 +30,11 @@ class FeedbackLoop:
 
         y = b u + v,    u = K (r - y)    so    u = K (r - v)/(1 + b K)
 
-    Every load v comes back through the controller: u and v are correlated. Least squares of y on u finds
+    Every load v comes back through the controller, so u and v are correlated. Least squares of y on u finds
 
         (b sigma_r^2 - sigma_v^2/K)/(sigma_r^2 + sigma_v^2),
 
-    which is b where the set point r moves much, and -1/K, the controller's own slope, where it rests.
+    which is b if the set point r moves much, and -1/K, the controller's own slope, if it rests.
 
     Args: b: rad/s per PWM count; K: PWM counts per rad/s.
     """
@@ -47,14 +47,14 @@ class FeedbackLoop:
         self._r, self._v = shapes / shapes.std(axis=1, keepdims=True)
 
     def run(self, excitation):
-        """r, u, y, (n,) each, with a set point of this rms and a load of 0.1 (rad/s)."""
+        """Return r, u, y, (n,) each, for a set point of the rms `excitation` and a load of 0.1 (rad/s)."""
         r, v = excitation * self._r, 0.1 * self._v
         u = self.K * (r - v) / (1 + self.b * self.K)
         return r, u, self.b * u + v
 
 
 class FeedbackView:
-    """The cloud (u, y) of a FeedbackLoop with the line of least squares. Attributes: figure."""
+    """The cloud (u, y) of a FeedbackLoop with its least-squares line. Attributes: figure."""
 
     def __init__(self, loop, largest):
         self.loop, self.figure = loop, new_figure(7.2, 4.0)
@@ -74,7 +74,7 @@ class FeedbackView:
         ax.text(left, 0.70 * height, "dotted: the controller, slope -1/K", color=COLOURS["green"], fontsize=9)
 
     def update(self, excitation):
-        """Draw for a set point of this rms (rad/s). Returns the slopes in words."""
+        """Draw for a set point of the rms `excitation` (rad/s). Returns the slopes in words."""
         r, u, y = self.loop.run(excitation)
         slope = (u @ y) / (u @ u)
         self._cloud.set_data(u, y)
@@ -85,7 +85,7 @@ class FeedbackView:
 
 @lru_cache(maxsize=20)
 def kept_motion(arm, number=0):
-    """A Fourier motion of 110 s to identify from (number 0), or another one to validate with (1 to 20).
+    """Return a Fourier motion of 110 s: for identification (number 0), or another one for validation (1 to 20).
 
     An optimiser ends up elsewhere on another processor, so the IR50P has its motions in data/excitation_ir50p.json. For
     another arm they are optimised here, briefly.

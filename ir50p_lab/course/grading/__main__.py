@@ -19,7 +19,7 @@ from ir50p_lab.errors import LabError
 
 
 def judged(handed_in, seconds=sandbox.SECONDS):
-    """[{function: (state, sentence)}] of submissions, several at a time, with a bar of progress."""
+    """Return [{function: (state, sentence)}] of submissions, checked several at a time, with a bar of progress."""
     judge = partial(sandbox.verdicts, before=sandbox.bubblewrap(), seconds=seconds)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = pool.map(judge, [one.functions for one in handed_in])
@@ -27,7 +27,7 @@ def judged(handed_in, seconds=sandbox.SECONDS):
 
 
 def write_table(path, handed_in, found):
-    """Write a row for each submission."""
+    """Write one row for each submission to the file `path`."""
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         table = csv.writer(file)
         said = ("predictions (self-reported)", "reasons (self-reported)")

@@ -21,7 +21,7 @@ _NOBODY = 65534
 
 
 def verdict(name, text):
-    """(state, sentence) of the text of a function's file; state: "right", "wrong", "loan" or "open"."""
+    """Return (state, sentence) for the text of a function's file; state: "right", "wrong", "loan" or "open"."""
     first = text.partition("\n")[0]
     if first.startswith("# on loan"):
         return "loan", ""
@@ -54,7 +54,7 @@ def _allow(seconds):
 
 
 def lock_up(seconds=None):
-    """From now on: no new process, no written file, little memory, no rights of root; seconds: of the processor.
+    """Allow from now on no new process, no written file, little memory, no rights of root; seconds: of processor time.
 
     Windows has no such limits.
     """

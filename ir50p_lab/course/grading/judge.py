@@ -1,6 +1,6 @@
 """The judge of 19: `python3 -m ir50p_lab judge FILE`. It holds arms, balls and cameras; a hand-in asks through a pipe.
 
-A hand-in runs in a process of its own, inside bubblewrap where there is one, and speaks in lines of JSON.
+A hand-in runs in a process of its own, inside bubblewrap if the system has it, and speaks in lines of JSON.
 """
 
 import argparse
@@ -30,10 +30,11 @@ _CHILD = ("-P", "-m", "ir50p_lab.course.grading.racer")
 
 
 def judged(hand_in_of, arms=3, *, seeds=None, seconds=SECONDS):
-    """Race a hand-in on arms that nobody has seen, two or more at a time, with a bar: RaceDay.
+    """Race a hand-in on arms that nobody has seen, several at a time, with a bar. Returns: RaceDay.
 
-    hand_in_of: unknown_arm, a function of the notebook, or the path of a file; beside its folder, or in it, may lie the
-    functions, `my_robot`. seeds: of the arms, default secret ones. seconds: for each arm, by the clock.
+    hand_in_of: unknown_arm, a function of the notebook, or the path of a file; the functions, `my_robot`, may lie in
+    its folder or next to that. arms: how many; seeds: of the arms, by default secret ones. seconds: for each arm, by
+    the clock.
     Raises InputError for what is not a hand-in.
     """
     path = hand_in(hand_in_of) if callable(hand_in_of) else Path(hand_in_of)

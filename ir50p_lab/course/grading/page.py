@@ -24,7 +24,7 @@ _REPORTED = "<p class=self>Grey: self-reported, a text editor can change it.</p>
 
 
 def page(handed_in, found):
-    """The text of the page; found: [{function: (state, sentence)}] of the submissions."""
+    """Return the text of the page; found: [{function: (state, sentence)}] of the submissions."""
     parts = [
         f"<h1>The class: {len(handed_in)} hand-ins</h1>",
         "<h2>Predictions that the class missed most</h2>" + _predictions(handed_in) + _REPORTED,

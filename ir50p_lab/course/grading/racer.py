@@ -30,7 +30,7 @@ def _warm():
 
 
 def main():
-    """Read the hand-in and run it; the standard input and output are the bench's alone."""
+    """Read the hand-in and run it; standard input and output belong to the bench alone."""
     text = Path("unknown_arm.py").read_text(encoding="utf-8-sig")
     _warm()
     into, told = os.fdopen(os.dup(0), encoding="utf-8"), os.fdopen(os.dup(1), "w", encoding="utf-8")

@@ -17,7 +17,7 @@ ENDED = "its process ended, or did not end in time: an endless loop, or more mem
 
 
 def isolation():
-    """The sentence that says how the functions of the class are run."""
+    """Return the sentence that says how the functions of the class are run."""
     if bubblewrap():
         return "Each student's functions run inside bubblewrap: no network, nothing of this machine written, limits."
     limits = "a limit of time" if os.name == "nt" else "limits of time, memory, processes and files"
@@ -25,7 +25,7 @@ def isolation():
 
 
 def bubblewrap():
-    """The words before a command that shut it in, or [] where bubblewrap is missing or may not work."""
+    """Return the words that, put before a command, shut it in; [] if bubblewrap is missing or may not work."""
     program = shutil.which("bwrap")
     if program is None:
         return []
@@ -38,9 +38,9 @@ def bubblewrap():
 
 
 def verdicts(functions, before, seconds=SECONDS):
-    """{name: (state, sentence)} of {name: text}; before: the words of bubblewrap.
+    """Return {name: (state, sentence)} of {name: text}; before: the words of bubblewrap.
 
-    A function that ends its process, or the time, is wrong; those after it get a process of their own.
+    A function that ends its process, or runs out of time, is wrong; those after it get a process of their own.
     """
     found, left = {}, dict(functions)
     while left:
@@ -72,14 +72,14 @@ def _run(functions, before, seconds):
 
 
 def started(command, home, **more):
-    """A process in a group of its own, with this home and one thread; it hears and speaks through pipes."""
+    """Return a process in a group of its own, with this home and one thread; it hears and speaks through pipes."""
     variables = os.environ | {VARIABLE: str(home), "OPENBLAS_NUM_THREADS": "1"}
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     return subprocess.Popen(command, env=variables, start_new_session=True, **pipes, **more)
 
 
 def end(child):
-    """End a process and all that it started."""
+    """End a process and everything that it started."""
     try:
         os.killpg(child.pid, signal.SIGKILL) if hasattr(os, "killpg") else child.kill()
     except (ProcessLookupError, PermissionError):

@@ -20,7 +20,9 @@ class _Refused(Exception):  # noqa: N818  (becomes the verdict)
 
 @dataclass
 class Submission:
-    """name: of the ZIP or folder; functions: {name: text of its file}; trouble: why something was not read, or "".
+    """What one student handed in.
+
+    name: of the ZIP or folder; functions: {name: text of its file}; trouble: why something was not read, or "".
 
     What the lab book says, which a text editor can change: predictions that were both guessed and measured, {name:
     entry}; attempts, {function: [what was said of each wrong answer]}; helped and partners, texts.
@@ -36,7 +38,7 @@ class Submission:
 
 
 def submissions(folder):
-    """All that is in a folder, sorted by name: ZIPs, and folders with my_robot or notebooks in them."""
+    """Return all Submissions in a folder, sorted by name: ZIPs, and folders that contain my_robot or notebooks."""
     folder = Path(folder)
     if not folder.is_dir():
         raise InputError(f"'{folder}' is not a folder: give the one that holds the hand-ins of the class")

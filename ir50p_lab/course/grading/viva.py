@@ -4,12 +4,12 @@ from ir50p_lab.course.lab_book.names import title
 
 
 def questions(submission, verdicts):
-    """Three sentences: on a guess that missed, on the function that took most tries, on a loan."""
+    """Return three sentences: on a guess that missed, on the function that took most attempts, on a loan."""
     return [_on_a_guess(submission.predictions), _on_tries(submission.attempts), _on_a_loan(verdicts)]
 
 
 def missed(entry):
-    """By what share of the truth a guess is off, 0 where it is within its tolerance."""
+    """Return by what share of the truth a guess is off, 0 if it is within its tolerance."""
     off = abs(entry["guess"] - entry["truth"])
     return off / max(abs(entry["truth"]), 1e-9) if off > entry["within"] * abs(entry["truth"]) else 0.0
 

@@ -1,4 +1,4 @@
-"""The function of 16 that stays in its notebook, on what it is tried, and the helpers that the notebook shows."""
+"""The function of 16 that stays in its notebook, what it is tried on, and the helpers that the notebook shows."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ir50p_lab.course.images.functions.circle_votes import circle_votes
 
 
 def edges_of(mask):
-    """Edge pixels of a mask: points (n, 2), (x, y) px, and unit vectors inwards (n, 2)."""
+    """Return the edge pixels of a mask: points (n, 2), (x, y) px, and unit vectors inwards (n, 2)."""
     smooth = mask.astype(float)
     for axis in (0, 1, 0, 1):  # a pixel and half of its two neighbours, down and across, twice
         smooth = (np.roll(smooth, 1, axis) + 2 * smooth + np.roll(smooth, -1, axis)) / 4
@@ -19,20 +19,20 @@ def edges_of(mask):
 
 
 def with_neighbours(votes):
-    """The votes (h, w) of each pixel and of its eight neighbours."""
+    """Return (h, w): the votes of each pixel and of its eight neighbours together."""
     tall = votes + np.roll(votes, 1, 0) + np.roll(votes, -1, 0)
     return tall + np.roll(tall, 1, 1) + np.roll(tall, -1, 1)
 
 
 def strongest(edges, radius, shape):
-    """The best middle for one radius: its votes as a share of a full circle's, and its place (column, row)."""
+    """Return the best middle for one radius: its votes as a share of a full circle's, and its place (column, row)."""
     votes = with_neighbours(circle_votes(*edges, radius, shape))
     row, column = np.unravel_index(np.argmax(votes), votes.shape)
     return votes.max() / (2 * np.pi * radius), (int(column), int(row))
 
 
 def best_circle(mask, radii):
-    """The circle with the largest share of votes: share, place (column, row), radius."""
+    """Return the circle with the largest share of votes: share, place (column, row), radius."""
     edges = edges_of(mask)
     return max((*strongest(edges, radius, mask.shape), radius) for radius in radii)
 

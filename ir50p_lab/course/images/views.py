@@ -15,7 +15,7 @@ _EVERY = 7  # one edge pixel in so many is drawn
 
 
 def bench_pictures(colour):
-    """The bench with a "red" or a "blue" ball, from files: in full light, in dim light, without the ball.
+    """Return pictures of the bench with a "red" or a "blue" ball, from files: full light, dim light, without the ball.
 
     Returns: three pictures (480, 640, 3). Raises InputError for another colour.
     """
@@ -25,7 +25,10 @@ def bench_pictures(colour):
 
 
 def numbers_figure(grey, x, y):
-    """Nine rows and columns of a grey picture (h, w) from pixel (x, y) on, as numbers (Figure 3.1): LabFigure."""
+    """Draw nine rows and columns of a grey picture (h, w), from pixel (x, y), as numbers (Figure 3.1).
+
+    Returns: LabFigure.
+    """
     part = np.round(grey[y : y + 9, x : x + 9]).astype(int)
     figure, ax = subplots(4.6, 4.4, note=STAMP)
     show_picture(ax, part, extent=(x - 0.5, x + 8.5, y + 8.5, y - 0.5))
@@ -37,10 +40,10 @@ def numbers_figure(grey, x, y):
 
 
 def votes_figure(picture, edges, radius, votes):
-    """Edge pixels with a line one radius inwards, and beside them the votes that they give. Returns: LabFigure.
+    """Draw edge pixels with a line one radius inwards, and next to them the votes that they give. Returns: LabFigure.
 
     picture (h, w, 3); edges: points (n, 2) and unit vectors inwards (n, 2); radius, px; votes (h, w).
-    Raises InputError where there is no edge.
+    Raises InputError if there is no edge.
     """
     points, inwards = edges
     if not len(points):
@@ -62,7 +65,7 @@ def votes_figure(picture, edges, radius, votes):
 
 
 def bench_with_ball(arm, x, y):
-    """A small picture (240, 320, 3) of the bench with a red ball at (x, y) m, red tape, and the arm turned away."""
+    """Return a small picture (240, 320, 3) of the bench: a red ball at (x, y) m, red tape, and the arm turned away."""
     from ir50p_lab.vision.rendering import Patch, SceneBall, arm_sticks, bench_camera, bench_scene, render_scene
 
     tape = Patch(position=(0.50, -0.05), size=(0.14, 0.02), angle=0.5)

@@ -10,9 +10,9 @@ _MOTIONS = ("turn about z", "shift along z", "shift along x", "turn about x")
 
 
 def walk(arm, q):
-    """A frame that does the twelve motions from the base to the tip, for `live`.
+    """Draw a frame that does the twelve motions from the base to the tip, for `live`.
 
-    Args: arm: Arm; q: (3,) rad, in which it stands.
+    Args: arm: Arm; q: (3,) rad, the pose of the arm.
     Returns: figure; f(motions) that shows so many of the twelve, names the last in the title, and asks for the next.
     """
     figure = new_figure(7.5, 5.2, projection="3d")
@@ -37,7 +37,9 @@ def walk(arm, q):
 
 
 def chain(q, table, dh_matrix=dh_matrix):
-    """Frames (n + 1, 4, 4), base first, of an arm given by its DH table, rows (d, a, alpha); q: (n,) theta, rad.
+    """Return the frames (n + 1, 4, 4), base first, of an arm given by its DH table.
+
+    table: rows (d, a, alpha); q: (n,) theta, rad.
 
     What is still `...` in the table counts as 0.
     """
@@ -48,12 +50,12 @@ def chain(q, table, dh_matrix=dh_matrix):
 
 
 def arm_by_table(table, dh_matrix):
-    """f(q): frames of the `chain` of this table by this `dh_matrix`."""
+    """Return f(q): the frames of the `chain` of this table by this `dh_matrix`."""
     return lambda q: chain(q, table, dh_matrix)
 
 
 def two_views(arms):
-    """Arms from above and from the side, one over the other: LabFigure.
+    """Draw arms from above and from the side, one over the other. Returns: LabFigure.
 
     arms: name -> transforms (n, 4, 4) of its frames, base first.
     """

@@ -11,7 +11,7 @@ from ir50p_lab.modelling import load_arm
 
 
 def along(places, q_start):
-    """The poses (3,) rad of a line, one for each place (3,) m, None where there is none."""
+    """Return the poses of a line, one (3,) rad for each place (3,) m, or None where there is none."""
     arm = load_arm()
     limits = np.clip([arm.q_min, arm.q_max], -np.pi, np.pi)
     q_now, way = q_start, []
@@ -23,9 +23,9 @@ def along(places, q_start):
 
 
 def pace(q, direction, l, fastest):
-    """Greatest tip speed (m/s) along direction, no joint above fastest (rad/s); 0 where the direction is shut.
+    """Return the greatest tip speed (m/s) along direction with no joint above fastest (rad/s); 0 if it cannot go there.
 
-    At a singular pose: that of the joint speeds of least length, which is safe and not always the greatest.
+    At a singular pose it is that of the joint speeds of least length, which is safe but not always the greatest.
     """
     Jv = _of_tip(q, l)
     qd = np.linalg.lstsq(Jv, direction, rcond=1e-9)[0]
@@ -35,7 +35,10 @@ def pace(q, direction, l, fastest):
 
 
 def push(q, direction, l, strongest):
-    """Greatest force (N) of the tip along direction, no joint above strongest (N m); inf where none has to give any."""
+    """Return the greatest force (N) of the tip along direction, no joint above strongest (N m); or inf.
+
+    It is inf if no joint has to give any torque.
+    """
     torque = np.max(np.abs(_of_tip(q, l).T @ direction))
     return strongest / torque if torque > 1e-9 else np.inf
 

@@ -26,7 +26,7 @@ def space(ax):
 class Brick:
     """A box with three different edges; `update(R)` turns it.
 
-    edges: (3,) full lengths along x, y, z. Attributes: corners, those drawn, face by face: (6, 4, 3).
+    edges: (3,) full lengths along x, y, z. Attributes: corners, as drawn, face by face: (6, 4, 3).
     """
 
     def __init__(self, ax, *, edges):
@@ -45,7 +45,10 @@ class Brick:
 
 
 def two_bricks(angle):
-    """A brick as it lay, turned by `angle` (rad) about x and its own y in either order, the turn between: LabFigure."""
+    """Draw a brick as it lay, and turned by `angle` (rad) about x and its own y in either order. Returns: LabFigure.
+
+    The turn between the two results is shown as well.
+    """
     figure = new_figure(11.5, 4.4, cols=4, projection="3d")
     first, second = rot_x(angle) @ rot_y(angle), rot_y(angle) @ rot_x(angle)
     titles = ("as it lay", "first x, then its own y", "first y, then its own x", "the single turn between")

@@ -17,7 +17,7 @@ class ColumnsView:
 
     Half a metre of arrow stands for 1 m/s of the tip at 1 rad/s.
 
-    Args: ax: 3-D axes; arm: Arm; aside: m that the third arrow is moved, where it would lie on the second.
+    Args: ax: 3-D axes; arm: Arm; aside: m by which the third arrow is moved if it would lie on the second.
     """
 
     def __init__(self, ax, arm, aside=0.0):
@@ -33,7 +33,7 @@ class ColumnsView:
         ]
 
     def update(self, q, Jv=None):
-        """Move the arm to q (3,) rad. Jv: (3, 3) m/rad, by default the arm's own. Returns it."""
+        """Move the arm to q (3,) rad. Jv: (3, 3) m/rad, by default the arm's own. Returns Jv."""
         self.view.update(q)
         tip, Jv = self.view.points[3], jacobian(self.arm, q)[:3] if Jv is None else Jv
         for k, arrow in enumerate(self.arrows):
@@ -48,7 +48,7 @@ class ColumnsView:
 
 
 def arrows(arm, q, J):
-    """The arm at q and the columns of J (3, 3) m/rad at its tip, an arrow for each joint: LabFigure."""
+    """Draw the arm at q and the columns of J (3, 3) m/rad at its tip, one arrow per joint. Returns: LabFigure."""
     figure, ax = subplots(7.5, 5.0, projection="3d")
     ColumnsView(ax, arm, aside=0.02).update(q, J)
     ax.set_title("Where the tip goes if joint 1, 2 or 3 turns (arrows drawn at half length)")
@@ -56,7 +56,7 @@ def arrows(arm, q, J):
 
 
 def arrows_panel(arm):
-    """The same for any shoulder and elbow, for `live`: figure, f(q2, q3) in degrees -> sentence."""
+    """Draw the same for any shoulder and elbow, for `live`. Returns: figure, f(q2, q3) in degrees -> sentence."""
     figure, ax = subplots(7.5, 5.2, projection="3d")
     ax.set_title("One arrow for each joint: its share of the tip's velocity")
     columns = ColumnsView(ax, arm)
@@ -70,7 +70,7 @@ def arrows_panel(arm):
 
 
 def way_out(arm, distances, speeds, limit):
-    """The arm from the side near its full reach, and the elbow's speed on the way there: LabFigure."""
+    """Draw the arm from the side near its full reach, and the elbow's speed while it goes there. Returns: LabFigure."""
     figure, plane, ax = subplots(9.5, 4.0, cols=2)
     halfway = distances[len(distances) // 2]
     SideView(plane, arm, inverse_kinematics(arm, [halfway, 0, arm.l[0]])["front/up"])
@@ -86,7 +86,7 @@ def way_out(arm, distances, speeds, limit):
 
 
 def pace_along(paces, busiest):
-    """The pace (n,) m/s along a way, in the colour of the joint (n,), 0 to 2, that sets it: LabFigure."""
+    """Draw the pace (n,) m/s along a path in the colour of the joint (n,), 0 to 2, that sets it. Returns: LabFigure."""
     figure, ax = subplots(7.5, 3.2)
     share = np.linspace(0, 100, len(paces))
     for joint, (name, colour) in enumerate(zip(_NAMES, _JOINTS, strict=True)):
@@ -99,7 +99,7 @@ def pace_along(paces, busiest):
 
 
 def where_not(arm, tips, rates, limit):
-    """Places of the arm's vertical plane where a joint would be faster than limit rad/s, and which one: LabFigure.
+    """Draw where in the arm's vertical plane a joint, and which, would exceed limit rad/s. Returns: LabFigure.
 
     tips: (n, m, 3) m of a grid of poses; rates: (n, m, 3) rad/s, what each joint needs there at worst.
     """
@@ -122,9 +122,9 @@ def where_not(arm, tips, rates, limit):
 
 
 def steps_panel(damped_step, arm, q_start, p, steps=40):
-    """Miss and elbow after each step towards p (3,) m from q_start, for `live`.
+    """Draw the miss and the elbow after each step towards p (3,) m from q_start, for `live`.
 
-    Returns: figure, f(damping, start) -> sentence; start: the elbow's, in degrees, in place of that of q_start.
+    Returns: figure, f(damping, start) -> sentence; start: the elbow's angle, in degrees, in place of that of q_start.
     """
     figure, misses, elbows = subplots(9.4, 3.8, cols=2)
     (miss,) = misses.semilogy(np.ones(steps + 1), "o-", ms=4)

@@ -13,9 +13,9 @@ from ir50p_lab.modelling.ik import inverse_kinematics, reachability
 
 
 def seen_from_above(arm, p):
-    """The column, the place p (3,) m and the line between them, with the angle to be found: LabFigure.
+    """Draw the column, the place p (3,) m and the line between them, with the angle to be found. Returns: LabFigure.
 
-    For a place behind the column also the line that arctan(y / x) means.
+    For a place behind the column the line that arctan(y / x) means is drawn, too.
     """
     figure, ax = from_above(height=4.2, title="From above the arm is a straight line")
     line(ax, [(0, 0), (arm.reach, 0)], "-", "grey", linewidth=1)
@@ -48,7 +48,7 @@ def _length(ax, start, end, text, aside=0.0):
 
 
 def side_view(arm, p):
-    """The triangle of shoulder, elbow and place, with its three lengths, the inner angle and q3 (Figure 1.8)."""
+    """Draw the triangle of shoulder, elbow and place, with its three lengths, the inner angle and q3 (Figure 1.8)."""
     figure, ax = subplots(7.2, 5.0)
     q = inverse_kinematics(arm, p)["front/up"]
     shoulder, elbow, tip = _triangle(ax, arm, q, "blue")
@@ -62,10 +62,10 @@ def side_view(arm, p):
 
 
 def triangles(arm, p, *, back=False):
-    """Both elbows over each other, facing the place p (3,) m or with the back to it: LabFigure.
+    """Draw both elbows, one above the other, facing the place p (3,) m or with the back to it. Returns: LabFigure.
 
-    With r, its slope gamma, the angle beta between r and either upper arm (Figure 1.8), both q3, and for the upper
-    elbow the perpendicular from the tip onto the upper arm, prolonged.
+    It shows r, its slope gamma, the angle beta between r and either upper arm (Figure 1.8), both q3, and for the upper
+    elbow the perpendicular from the tip onto the upper arm, extended.
     """
     figure, ax = subplots(7.2, 5.0)
     answers = inverse_kinematics(arm, p).q[2:] if back else inverse_kinematics(arm, p).q[:2]
@@ -86,7 +86,7 @@ def triangles(arm, p, *, back=False):
 
 
 def circles(arm):
-    """Circles with radius l2 about the shoulder and l3 about the place, for `live`.
+    """Draw circles with radius l2 about the shoulder and l3 about the place, for `live`.
 
     Returns: figure; f(out, height) that places them and says whether they cross.
     """
@@ -115,7 +115,7 @@ def circles(arm):
 
 
 def straight_line(arm, places, q_start, q_end, poses=()):
-    """From above: a line of places (n, 3) m, and the tip's path when all joints turn evenly instead: LabFigure.
+    """Draw, from above, a line of places (n, 3) m, and the tip's path if all joints turn evenly: LabFigure.
 
     poses: for each place the pose that was found, or None; places without one are marked.
     """
@@ -133,10 +133,10 @@ def straight_line(arm, places, q_start, q_end, poses=()):
 
 
 def allowed_map(arm, allowed, free=None):
-    """How many poses allowed(p) lists at the places 0.03 m above the table, from above: LabFigure.
+    """Draw how many poses allowed(p) lists at places 0.03 m above the table, from above. Returns: LabFigure.
 
     free(p): the poses among them that are really free; places that have only others are marked.
-    Where one of them stops, there is no map, and a sentence says why.
+    If one of the functions stops, there is no map, and a sentence says why.
     """
     figure, ax = from_above(title="3 cm over the table")
     side = np.linspace(-arm.reach, arm.reach, 61)

@@ -1,4 +1,4 @@
-"""The student's lab book: predictions, notes and figures; beside it results, claims and progress."""
+"""The student's lab book: predictions, notes and figures; with it results, claims and progress."""
 
 from ir50p_lab import lazy
 

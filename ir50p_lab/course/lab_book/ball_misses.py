@@ -1,4 +1,4 @@
-"""How near the ball each notebook came, from the student's lab book."""
+"""How near each notebook came to the ball, from the student's lab book."""
 
 import numpy as np
 
@@ -21,9 +21,11 @@ _WAYS = {
 
 
 def so_far():
-    """Plot how far each notebook missed the ball and how long it took, from the student's lab book: LabFigure.
+    """Plot how far each notebook missed the ball, and how long it took. Returns: LabFigure.
 
-    What is not done yet has an empty row; a miss below 0.01 mm stands at 0.01.
+    The numbers are those of the student's lab book.
+
+    What is not done yet has an empty row; a miss below 0.01 mm is drawn at 0.01.
     """
     book = predictions.read()["predictions"]
     figure, ax = subplots(7.5, 3.4)

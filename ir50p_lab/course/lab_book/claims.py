@@ -15,18 +15,19 @@ class ClaimError(AssertionError):
 
 
 def claim(text, value, *, below=None, above=None, near=None, within=None, unit="", by=""):
-    """Print what is claimed, its value and its limit; raise the same sentence where it does not hold.
+    """Print what is claimed, its value and its limit; raise the same sentence if it does not hold.
 
         claim("the shoulder sinks", fell, above=0.1)
         claim("P leaves g/Kp", error, near=predicted, within=1e-6)
 
-    Args: text: the claim, said so that a student understands it. value: a number or an array, of which every element
+    Args: text: the claim, in words that a student understands. value: a number or an array, of which every element
     has to keep the limits. below, above: value < below, value > above. near, within: |value - near| < within. Limits
-    are numbers, or arrays that fit the value. unit: of all of them, said after the value.
+    are numbers, or arrays that fit the value. unit: of all of them, printed after the value. by: whose function made
+    the value, as `badge_of` returns it; if that is not "yours", the sentence is printed, but nothing is claimed.
 
-    Where the environment variable IR50P_CLAIMS names a file, a line of JSON is added to it: the text, and how far
+    If the environment variable IR50P_CLAIMS names a file, a line of JSON is added to it: the text, and how far
     each element of the value is from its limits. tests/notebooks/margins.py reads that over many units and seeds.
-    Raises: ClaimError (an AssertionError); a value that is not finite fails too. InputError without a limit.
+    Raises: ClaimError (an AssertionError), also for a value that is not finite; InputError without a limit.
     """
     if (near is None) != (within is None) or (below is None and above is None and near is None):
         raise InputError(f"claim {text!r} needs a limit: below=, above=, or near= and within=")

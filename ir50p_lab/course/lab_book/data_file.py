@@ -1,15 +1,16 @@
-"""Where the files that come with the course are: pictures, recordings, tables."""
+"""Where the files are that come with the course: pictures, recordings, tables."""
 
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import PROJECT
 
 
 def data_file(name):
-    """Path of a file or folder in data/, from whatever folder a notebook runs in.
+    """Return the path of a file or folder in data/, from whatever folder a notebook runs in.
 
         Recording.load(data_file("first_reach.csv"))
 
-    name: counted from data/, as "calibration/flat/board_01.jpg". Raises InputError, with what is there, if it is not.
+    name: counted from data/, such as "calibration/flat/board_01.jpg". Raises InputError, with what is there, if it is
+    missing.
     """
     path = PROJECT / "data" / str(name)
     if not path.exists():

@@ -6,11 +6,11 @@ from pathlib import Path
 
 @cache
 def titles():
-    """{name: words} of names.txt."""
+    """Return {name: words} from names.txt."""
     lines = Path(__file__).with_name("names.txt").read_text("utf-8").splitlines()
     return dict(line.split(": ", 1) for line in lines)
 
 
 def title(key):
-    """The title of a number or figure of the lab book: from names.txt, else made from its key."""
+    """Return the title of a number or figure of the lab book: from names.txt, else made from its key."""
     return titles().get(key, key.replace(".", ", ").replace("_", " "))

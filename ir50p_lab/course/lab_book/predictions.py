@@ -9,7 +9,7 @@ from ir50p_lab.course.lab_book.student_file import LabBookError, read_json, writ
 
 
 def path():
-    """Where the lab book is: results/lab_book.json in the student's folder."""
+    """Return where the lab book is: results/lab_book.json in the student's folder."""
     return home.home() / "results" / "lab_book.json"
 
 
@@ -33,15 +33,16 @@ def change(edit):
 
 
 def now():
-    """The time, as it is written into the lab book."""
+    """Return the time in the form in which it is written into the lab book."""
     return datetime.now().astimezone().isoformat(timespec="seconds")
 
 
 def predict(name, guess, unit="", *more, within=0.1, choices=()):
     """Write down a guess before the run that answers it: predict("fk.height", 0.3, "m").
 
-    With the dots it says that a guess is missing, and goes on. What is no answer is refused with a sentence and does
-    not count. Until it is measured, a guess may be replaced once; one that comes later is shown, but does not count.
+    As long as the dots are there, it says that a guess is missing, and goes on. What is no answer is refused with a
+    sentence and does not count. Until it is measured, a guess may be replaced once; one that comes later is shown, but
+    does not count.
 
     Args: guess: a number. within: how far it may be off before `measured` asks why, as a share of what is measured.
     choices: numbers of which the guess is one, or {number: what it means}. more: what a decimal comma leaves over.
@@ -60,12 +61,12 @@ def predict(name, guess, unit="", *more, within=0.1, choices=()):
 
 
 def measured(name, value, unit="", by=""):
-    """Show what came out beside what was guessed, and write it down. unit: where nothing was predicted.
+    """Show what came out next to what was guessed, and write it down. unit: needed where nothing was predicted.
 
-    by: whose function made the value, as `badge_of` and `my_robot.whose` tell it: what is not "yours" is not written
-    down; "": a fact of the course.
+    by: whose function made the value, as `badge_of` and `my_robot.whose` return it: unless it is "yours", the value is
+    not written down; "": a fact of the course.
 
-    Where the guess is off by more than its prediction allows, and no reason is written down yet, it asks for one.
+    If the guess is off by more than its prediction allows, and no reason is written down yet, it asks for one.
     """
     try:
         value = float(value)
@@ -109,7 +110,7 @@ def why(name, text):
 
 
 def partners(*names):
-    """Write down who works together, partners("A. Name", "B. Name"): the report names them. Without names: who does."""
+    """Write down who works together, partners("A. Name", "B. Name"), for the report. Without names: print who does."""
     names = [str(name).strip() for name in names if str(name).strip()]
 
     def edit(book):
@@ -120,14 +121,14 @@ def partners(*names):
 
 
 def note(text):
-    """Write a remark into the lab book; the report shows it with its time. The same remark is kept once."""
+    """Write a remark into the lab book; the report shows it with its time. The same remark is kept only once."""
     _keep_text("notes", text, "note: write what you saw")
 
 
 def helped_by(text):
-    """Write down who or what helped, and with what: helped_by("an assistant explained the half angle"). It is reported.
+    """Write down who or what helped, and with what, for the report: helped_by("an assistant explained the half angle").
 
-    The same sentence is kept once.
+    The same sentence is kept only once.
     """
     _keep_text("helped", text, "helped_by: write who or what helped, and with what,")
 
@@ -142,7 +143,7 @@ def _keep_text(where, text, asked):
 
 
 def keep(figure, name):
-    """Put a matplotlib figure into the lab book as `name`; the report shows the last one of each name."""
+    """Put a matplotlib figure into the lab book as `name`; the report shows the last figure of each name."""
     file = f"{re.sub(r'[^a-zA-Z0-9]+', '_', name).strip('_') or 'figure'}.png"
     place = path().parent / "figures" / file
     with writing(place, place.parent):

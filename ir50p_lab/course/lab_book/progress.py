@@ -15,7 +15,7 @@ def progress_path() -> Path:
 
 
 def read_progress() -> dict[str, str]:
-    """Return {exercise: time of the first right answer}; empty when there is no file yet. Raises LabBookError."""
+    """Return {exercise: time of the first right answer}, empty if there is no file yet. Raises LabBookError."""
     return read_json(progress_path(), {"done": {}}, _is_progress)["done"]
 
 
@@ -24,7 +24,7 @@ def _is_progress(content):
 
 
 def record(name: str) -> None:
-    """Note that an exercise is done. The first time stays; the file is replaced in one step. Raises LabBookError."""
+    """Record that an exercise is done. The first time stays; the file is replaced in one step. Raises LabBookError."""
     done = read_progress()
     if name in done:
         return

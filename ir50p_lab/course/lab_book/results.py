@@ -1,4 +1,4 @@
-"""The chain of the student's own results: calibration (10), model (13), camera (17), each for the bench it is from.
+"""The chain of the student's own results: calibration (10), model (13), camera (17), each for the bench it comes from.
 
 What a bench needs of them (`connect()` takes the calibration) is read in `bench.result_files`; all is written here.
 """
@@ -24,7 +24,7 @@ _RENDERED = {"bench": "rendered pictures", "bench_id": "rendered", "arm": "", "s
 
 
 def save_result(kind, value, more=None, measured_on=None):
-    """Keep a result with its origin; later notebooks take the newest. One line says what was kept.
+    """Keep a result with its origin; later notebooks take the newest one. One line says what was kept.
 
         save_result("model", identify(recording), recording)
         save_result("model", theta, errors, recording)    # your own
@@ -32,10 +32,10 @@ def save_result(kind, value, more=None, measured_on=None):
 
     Args:
         kind: 'calibration' (of potentiometers), 'model' (what `identify` or `output_error` returns, or your own theta
-        (3, 20) in PWM counts) or 'camera' (what `calibrate` returns). more: standard errors of your own theta
-        (3, 20): inf where the data do not tell, nan where it was not fitted; of a camera T_base_cam (4, 4), where it
-        stands. measured_on: the open bench, or the Recording, that it is from, the third argument where there is no
-        `more`; None: rendered pictures of a camera, the simulated arm of your own theta.
+        (3, 20) in PWM counts) or 'camera' (what `calibrate` returns). more: for your own theta its standard errors
+        (3, 20), inf where the data do not tell, nan where it was not fitted; for a camera T_base_cam (4, 4), where it
+        stands. measured_on: the open bench, or the Recording, from which it comes; it is the third argument if there is
+        no `more`. None: rendered pictures of a camera, or the simulated arm of your own theta.
 
     From a board without an id nothing is kept; the line says so. Raises InputError for another kind, a theta or errors
     of another shape, for a T_base_cam that is not a rigid transform, and if it cannot be written.
@@ -60,7 +60,7 @@ def save_result(kind, value, more=None, measured_on=None):
 
 
 def add(kind, write, **about):
-    """Keep a result. write: function (path) that writes the numbers; about: the other fields of Result. Returns it.
+    """Keep a result, and return it. write: function (path) that writes the numbers; about: the other fields of Result.
 
     Raises InputError if it cannot be written.
     """
@@ -81,10 +81,12 @@ def _describe(result):
 
 
 def load_result(kind, bench, course=None):
-    """Your newest result of this kind for a bench; on a simulated arm without one the course's. One line says whose.
+    """Return your newest result of this kind for a bench; a simulated arm without one gets the course's.
 
-    Args: kind: 'model' or 'camera' (`connect()` takes the calibration by itself). bench: the bench it is for: what was
-    measured on another one does not count. course: function () -> what the course has instead.
+    One line says whose it is.
+
+    Args: kind: 'model' or 'camera' (`connect()` takes the calibration by itself). bench: the bench for which it is
+    needed: what was measured on another one does not count. course: function () -> what the course has instead.
     Raises NotMeasuredError for a real arm on which nothing was measured; InputError for a damaged file.
     """
     found = newest_result(kind, bench)
@@ -98,7 +100,7 @@ def load_result(kind, bench, course=None):
 
 
 def newest_result(kind, bench):
-    """The Result of this kind that counts for a bench; None if there is none."""
+    """Return the Result of this kind that counts for a bench, or None if there is none."""
     _check(kind)
     if kind == "camera" and bench.simulated:
         return newest(kind, _RENDERED["bench_id"], "")
@@ -106,10 +108,10 @@ def newest_result(kind, bench):
 
 
 def results(*, choose=None, withdraw=None):
-    """Your results as a table, the one that counts for its bench marked.
+    """Return your results as a table, with the one that counts for its bench marked.
 
-    Args: choose: name of a result that counts from now on, whatever is newer; withdraw: name of one that does not
-    count any more (`choose` takes it back). Returns: pandas.DataFrame.
+    Args: choose: name of a result that counts from now on, whatever is newer; withdraw: name of one that no longer
+    counts (`choose` takes it back). Returns: pandas.DataFrame.
     """
     import pandas as pd
 
@@ -129,10 +131,10 @@ def results(*, choose=None, withdraw=None):
 
 
 def arm_that_answers(*needs, **options):
-    """`connect(**options)`, but the simulated arm where the bench cannot do what a cell needs; a line says why.
+    """Return the open bench of `connect(**options)`, or the simulated arm if that bench cannot do what a cell needs.
 
-    A recording does not answer. A real arm needs the results named in `needs` ('calibration', 'model', 'camera'),
-    measured on this very bench: no law that rests on a model of another arm ever drives it. Returns: an open bench.
+    A line says why. A recording does not answer. A real arm needs the results named in `needs` ('calibration', 'model',
+    'camera'), measured on this very bench: no law that rests on a model of another arm ever drives it.
     """
     bench = connect(**options)
     missing = [kind for kind in needs if not bench.simulated and newest_result(kind, bench) is None]
@@ -149,7 +151,7 @@ def arm_that_answers(*needs, **options):
 
 @contextlib.contextmanager
 def arm_at_rest(arm, *needs):
-    """The open bench of `arm_that_answers(*needs)`, with this arm moved to its rest pose."""
+    """Return the open bench of `arm_that_answers(*needs)` for this arm, which has been moved to its rest pose."""
     with arm_that_answers(*needs, arm=arm, q0=rest_pose(arm)) as bench:
         next(bench.run(seconds=0.02, record=False))  # where is it?
         bench.go_to_rest()

@@ -1,4 +1,4 @@
-"""Files of the student's, as readable JSON: whole or not at all, and a remedy where one is damaged."""
+"""Files that belong to the student, as readable JSON: written whole or not at all, with a remedy if one is damaged."""
 
 import json
 from contextlib import contextmanager
@@ -12,9 +12,9 @@ class LabBookError(LabError):
 
 
 def read_json(path, empty, is_right):
-    """Return the content over `empty`, a dict; `empty` alone where there is no file yet.
+    """Return the content laid over `empty`, a dict; `empty` alone if there is no file yet.
 
-    is_right: function of the content. Raises LabBookError where it is not, and for a file that cannot be read.
+    is_right: function of the content. Raises LabBookError if it returns False, and for a file that cannot be read.
     """
     why = "it holds something else"
     try:
@@ -30,7 +30,7 @@ def read_json(path, empty, is_right):
 
 @contextmanager
 def writing(path, folder):
-    """Make the folder; what goes wrong while a file is written there becomes a LabBookError."""
+    """Make the folder; whatever goes wrong while a file is written there becomes a LabBookError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         yield
@@ -41,6 +41,6 @@ def writing(path, folder):
 
 
 def write_json(path, content, folder):
-    """Write a file in one step, the folder as well. Raises LabBookError."""
+    """Write a file in one step, and make its folder if need be. Raises LabBookError."""
     with writing(path, folder):
         home.replace_text(path, json.dumps(content, indent=1, ensure_ascii=False) + "\n")

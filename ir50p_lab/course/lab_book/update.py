@@ -14,7 +14,7 @@ _INTO = {"my_robot/**/*.*": "", "results/**/*.*": "", "recordings/**/*.*": "", "
 
 
 def take_over(folder, named=None):
-    """Copy my_robot, results, recordings and notes of the course in the folder named; its notebooks go to `old/`.
+    """Copy my_robot, results, recordings and notes of the course in the given folder; its notebooks go to `old/`.
 
     A ZIP that `take_home()` made serves as well. Nothing is overwritten: a file that differs from the one here, or
     cannot be read, is named. Ends the program with a sentence if the folder holds no course, or is this one.

@@ -1,4 +1,4 @@
-"""Whose code moves an arm: told from the function that a view is given."""
+"""Whose code moves an arm, as found from the function that is given to a view."""
 
 import inspect
 
@@ -10,10 +10,12 @@ _WEAKEST_FIRST = ("not written yet", "the course's", "on loan", "yours")
 
 
 def badge_of(function, given=()):
-    """Say whose code a view runs, the weakest of all that it rests on: one of `_WEAKEST_FIRST`.
+    """Return whose code a view runs: "not written yet", "the course's", "on loan" or "yours".
+
+    Of all the functions on which the view rests, the first of these that applies to one of them is returned.
 
     function: what draws or moves the arm, or None: "the course's". What it calls is looked up in the notebook and in
-    `my_robot`; a function or table in which dots still stand is not written yet.
+    `my_robot`; a function or table in which dots still stand is "not written yet".
     given: functions that the notebook gives, and that no badge counts.
     """
     found = set(_owners(function, set(map(id, given))))

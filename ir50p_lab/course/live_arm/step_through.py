@@ -14,7 +14,7 @@ class _Steps(ipywidgets.VBox):
 
 
 def step_through(arm, poses, p, **options):
-    """The arm in one of several poses (n, 3) rad for the place p (3,) m, chosen by a slider: a widget."""
+    """Return a widget: the arm in one of several poses (n, 3) rad for the place p (3,) m, chosen by a slider."""
     view = LiveArm(arm, poses[0], ball=(p, 0.012), sliders=False, **options)
     chosen = ipywidgets.IntSlider(1, 1, len(poses), description="pose")
 

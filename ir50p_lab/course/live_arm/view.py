@@ -1,4 +1,4 @@
-"""The widget LiveArm: what Python says to the view in the browser, and hears from it."""
+"""The widget LiveArm: what Python tells the view in the browser, and what it hears from it."""
 
 import base64
 import gzip
@@ -37,26 +37,26 @@ class Bundle(anywidget.AnyWidget):  # whose bytes, unlike those of an ipywidgets
 
     @classmethod
     def get(cls):
-        """The one of this kernel."""
+        """Return the Bundle of this kernel."""
         if cls.shared is None or cls.shared.comm is None:
             cls.shared = cls(packed=gzip.compress(BUNDLE.read_bytes(), 9, mtime=0))
         return cls.shared
 
 
 class LiveArm(anywidget.AnyWidget):
-    """The arm in 3-D; shown when it is the last line of a cell.
+    """The arm in 3-D; shown if it is the last line of a cell.
 
     Args:
         arm: Arm. q: (3,) rad, where it starts.
         on_drag: f(p, q_now) -> q or None, moves the arm when its tip is dragged to p (3,) m; None: inverse kinematics
-        in the browser. frames: f(q) -> (4, 4, 4), transforms of frames 0 to 3 to the base: the arm is drawn by them,
-        wrong ones too. badge: whose code moves the arm, 'yours' or "the course's"; by default told from them.
+        in the browser. frames: f(q) -> (4, 4, 4), transforms of frames 0 to 3 to the base, by which the arm is drawn,
+        even if they are wrong. badge: whose code moves the arm, 'yours' or "the course's"; by default found from them.
         layers: which of table, shadow, trail, frames, joint axes, velocity ellipsoid, force ellipsoid, ball are shown
-        at first. ball: (p, radius) m, p (3,) or, of several, (n, 3). height: CSS pixels; sliders: of the joints.
-        in_space: without table, stops and set point, for motions that know none of them.
+        at first. ball: (p, radius) m, p (3,) or, for several, (n, 3). height: CSS pixels; sliders: whether the joints
+        have them. in_space: without table, stops and set point, for motions that know none of them.
 
     Attributes: q, list of rad, in both directions; layers.
-    `play(run)` shows a motion. Raises InputError for what cannot be drawn. Where `frames` gives none, a
+    `play(run)` shows a motion. Raises InputError for what cannot be drawn. If `frames` gives no frames, a
     sentence says so, and the arm is drawn by the course's.
     """
 
@@ -194,7 +194,7 @@ class LiveArm(anywidget.AnyWidget):
 
 
 def pack(runs, labels, *, wanted=True):
-    """Rows of one or two runs on a common time, and what stands in their columns.
+    """Return the rows of one or two runs on a common time, and what their columns hold.
 
     Args: runs: each with t (n,) s and q (n, 3) rad; optional reference (n, 3) or (n, 3, 3) rad, u (n, 3), unit,
     simulated (bool). labels: a name for each; wanted: with the set point.
@@ -223,7 +223,7 @@ def pack(runs, labels, *, wanted=True):
 
 
 def still_png(view):
-    """The present pose of a LiveArm, and its path if it plays a run, by matplotlib: bytes of a PNG file."""
+    """Return a PNG file, as bytes, of a LiveArm's present pose, and of its path if it plays a run."""
     with DRAWING:
         figure = new_figure(7.2, 4.6, projection="3d")
         ax = figure.axes[0]

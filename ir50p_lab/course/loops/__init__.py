@@ -1,4 +1,4 @@
-"""Notebooks 08, 09 and A2: a controller from its parts, broken, tuned, and further on."""
+"""Notebooks 08, 09 and A2: a controller built from its parts, broken, tuned, and taken further."""
 
 from ir50p_lab import lazy
 

@@ -1,9 +1,9 @@
-"""Six loops that are broken, each in its own way, and a healthy one: without a name, named by the student, then cured.
+"""Six loops that are broken, each in its own way, and a healthy one: shown without a name, named by the student, cured.
 
     run = broken("A")
     name_it("A", "windup")
 
-Simulated, on the arm of the course; case C on the thesis's own arm, whose gains it is about.
+Simulated, on the arm of the course; case C on the thesis's own arm, because it is about that arm's gains.
 """
 
 import tomllib
@@ -28,30 +28,30 @@ CASES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="ut
 
 
 class Late:
-    """A controller that hears of every angle some samples late."""
+    """A controller that gets every angle some samples late."""
 
     def __init__(self, controller, samples):
         self.controller, self.samples, self.unit = controller, samples, "PWM"
         self.reset()
 
     def reset(self):
-        """Forget what was heard."""
+        """Forget the angles so far."""
         self.controller.reset()
         self.heard = []
 
     def step(self, t, q, reference):
-        """Answer to the angle of `samples` samples ago."""
+        """Return the answer to the angle of `samples` samples ago."""
         self.heard = [*self.heard, np.array(q)][-1 - self.samples :]
         return self.controller.step(t, self.heard[0], reference)
 
 
 def far_target(arm):
-    """The thesis's set point, where the arm's travel allows it, (3,) rad."""
+    """Return the thesis's set point as far as the arm's travel allows it, (3,) rad."""
     return np.clip(THESIS_TARGET, 0.9 * np.array(arm.q_min), 0.9 * np.array(arm.q_max))
 
 
 def broken(letter, arm=None):
-    """The run of a case, "A" to "G"."""
+    """Return the run of a case, "A" to "G"."""
     _case(letter)
     arm = load_arm() if arm is None else arm
     with warnings.catch_warnings():
@@ -61,51 +61,51 @@ def broken(letter, arm=None):
 
 
 def windup(arm, *, cured=False):
-    """A large step without friction, with and without rest for the integral at the limit."""
+    """Return a large step without friction; the integral rests at the limit only if `cured`."""
     pid = PID((289, 225, 270), ki=200, kd=(40, 30, 30), limit_pwm=255, anti_windup=cured)
     return simulate(arm.without_friction(), pid, far_target(arm), duration=6)
 
 
 def kick(arm, *, cured=False):
-    """A small jump, D on the error or on the measurement."""
+    """Return a small jump, with D on the error, or on the measurement if `cured`."""
     pid = PID(100, ki=20, kd=40, limit_pwm=255, derivative_on="measurement" if cured else "error")
     return simulate(arm.without_friction(), pid, steps([0, 1], [[0, 0, 0], [0.2, 0, 0]]), duration=3)
 
 
 def sampling(arm, *, period=0.01):
-    """The thesis's arm with its gains, the command (N m, at most 330) held for `period` s."""
+    """Return a run of the thesis's arm with its gains; the command (N m, at most 330) is held for `period` s."""
     pid = PID(THESIS_KP, kd=THESIS_KD, limit=330, period=period, filter_hz=np.inf)
     return simulate(THESIS_A, pid, THESIS_TARGET, duration=2, period=period, step=min(period, 0.0005))
 
 
 def delay(arm, *, samples=15):
-    """A loop that hears late, without friction; the step is so small that the motor keeps within its limit."""
+    """Return a run of a loop that gets angles late, without friction; the motor stays within its limit."""
     pid = PID((800, 1500, 1500), ki=(0, 2000, 2000), kd=10, limit_pwm=255)
     return simulate(arm.without_friction(), Late(pid, samples), 0.15 * far_target(arm), duration=6)
 
 
 def healthy(arm):
-    """The large step of a loop with nothing wrong: its motor is at its limit for a while, as any motor would be."""
+    """Return a large step of a loop with nothing wrong: its motor is at its limit for a while, as any would be."""
     pid = PID((1000, 1500, 1500), ki=(0, 2000, 2000), kd=(80, 10, 10), limit_pwm=255)
     return simulate(arm.without_friction(), pid, far_target(arm), duration=6)
 
 
 def hears_late(arm, controller, samples):
-    """A middling step by a controller that hears `samples` late."""
+    """Return a step of middle size by a controller that gets angles `samples` samples late."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnstableLoopWarning)  # what is looked for
         return simulate(arm, Late(controller, samples), 0.4 * far_target(arm), duration=6)
 
 
 def friction(arm, *, kp=150.0, ki=20.0, duration=10):
-    """A small step of joint 1 that friction stops short."""
+    """Return a small step of joint 1 that friction stops short of its target."""
     pid = PID((kp, 400, 400), ki=(ki, 1500, 1500), kd=(20, 10, 10), limit_pwm=255)
     target = 0.4 * far_target(arm)
     return simulate(arm, pid, target, q0=target - [0.3, 0, 0], duration=duration)
 
 
 def noise(arm, *, filter_hz=np.inf):
-    """The measured angle, with a D that hears every count."""
+    """Return a run with a noisy measured angle and a D that reacts to every count."""
     from ir50p_lab.course.loops.contest_rules import PRACTICE, drive
 
     pid = PID(FIRM_KP, ki=FIRM_KI, kd=60, limit_pwm=255, filter_hz=filter_hz)

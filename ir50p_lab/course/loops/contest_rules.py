@@ -1,10 +1,10 @@
-"""The contest: a controller drives arms it has not seen, and the worst of five figures is its score.
+"""The contest: a controller drives arms that it has not seen, and the worst of five figures is its score.
 
-Each run: a copy of the arm as the series scatters, with noise, a converter of 10 bits, dry friction, play, 30 ms of
+Each run has a copy of the arm as the series scatters, with noise, a converter of 10 bits, dry friction, play, 30 ms of
 delay and a payload; its potentiometers are calibrated. The arm takes up its weight for 3 s (not scored), makes a large
-step of all joints (4 s) and a small one (3 s). Scored is the true angle, by `step_metrics`' figures and two of our own,
-each over a limit that a careful hand can keep. The score is the *largest* of these quotients, over joints and runs:
-what is spared in one buys nothing in another. Below 1 is won. Simulated: no number here was measured.
+step of all joints (4 s) and a small one (3 s). The true angle is scored, by the figures of `step_metrics` and two of
+our own, each divided by a limit that a careful hand can keep. The score is the *largest* of these quotients, over
+joints and runs: what is saved in one does not help another. Below 1 is won. Simulated: no number here was measured.
 """
 
 from dataclasses import dataclass
@@ -45,7 +45,10 @@ _MOMENT = 10  # samples over which the swing of the command is taken: holding a 
 
 @dataclass(frozen=True)
 class Draw:
-    """One arm of the contest: poses (3, 3) rad held from the TIMES; payload kg at the tip; copy of the series."""
+    """One arm of the contest.
+
+    poses: (3, 3) rad, held from the TIMES; payload: kg at the tip; copy: its number in the series.
+    """
 
     poses: np.ndarray
     payload: float
@@ -59,9 +62,13 @@ class Draw:
 
 @dataclass(frozen=True)
 class Score:
-    """terms (5, 3): the largest of each figure in LIMITS, per joint; fault: why the bench cut the drive, or "".
+    """How a controller did.
 
-    value: the largest term over its limit; won: below 1; decides: the name of that term, and the joint (1, 2, 3).
+    terms: (5, 3), the largest of each figure in LIMITS, per joint; fault: why the bench cut the drive, "" if it did
+    not.
+
+    value: the largest term divided by its limit; won: whether that is below 1; decides: the name of that term, and the
+    joint (1, 2, 3).
     """
 
     terms: np.ndarray
@@ -69,12 +76,12 @@ class Score:
 
     @property
     def quotients(self):
-        """terms over their limits, (5, 3)."""
+        """The terms divided by their limits, (5, 3)."""
         return self.terms / np.array([limit for limit, _ in LIMITS.values()])[:, None]
 
     @property
     def value(self):
-        """The score."""
+        """The score: the largest quotient."""
         return float(self.quotients.max())
 
     @property
@@ -84,7 +91,7 @@ class Score:
 
     @property
     def decides(self):
-        """(name of the worst term, joint)."""
+        """The name of the worst term, and its joint."""
         term, joint = np.unravel_index(np.argmax(self.quotients), self.terms.shape)
         return list(LIMITS)[term], int(joint) + 1
 
@@ -104,7 +111,7 @@ class Score:
 
 @lru_cache(maxsize=32)
 def draw(arm, seed):
-    """The Draw of a seed: poses in the inner 70 % of the travel, elbow and tip at least 8 cm above the table."""
+    """Return the Draw of a seed: poses in the inner 70 % of the travel, elbow and tip at least 8 cm above the table."""
     rng = np.random.default_rng(seed)
     low, high = (np.clip(limit, -np.pi, np.pi) for limit in (arm.q_min, arm.q_max))
     low, high = low + 0.15 * (high - low), high - 0.15 * (high - low)
@@ -125,7 +132,7 @@ def drive(controller, seed, arm=None):
     """Drive the arm of a seed. Returns Draw, Recording (what the controller saw and sent) and true angles (1000, 3).
 
     controller: any object with `step(t, q, reference)`, in PWM counts; the package's PID runs compiled.
-    Raises LabError where the bench cuts the drive, and what the controller raises.
+    Raises LabError if the bench cuts the drive, and whatever the controller raises.
     """
     arm = load_arm() if arm is None else arm
     given = draw(arm, seed)
@@ -137,7 +144,7 @@ def drive(controller, seed, arm=None):
 
 
 def grade_run(given, u, q):
-    """The five figures of LIMITS of a run, (5, 3): u (1000, 3) commands in counts, q (1000, 3) true angles."""
+    """Return the five figures of LIMITS for a run, (5, 3): u (1000, 3) commands in counts, q (1000, 3) true angles."""
     first, second, end = (round(t / _PERIOD) for t in (*TIMES[1:], END))
     found = np.zeros((5, 3))
     for k, part in enumerate((slice(first, second), slice(second, end))):
@@ -153,7 +160,10 @@ def grade_run(given, u, q):
 
 
 def score(controller, seeds=PRACTICE, arm=None):
-    """The Score of a controller on the arms of `seeds`, which everybody may look at. A cut drive is lost (inf)."""
+    """Return the Score of a controller on the arms of `seeds`, which everybody may look at.
+
+    A cut drive has lost (inf).
+    """
     check_controller(controller)
     try:
         return score_of([drive(controller, seed, arm) for seed in seeds])
@@ -162,15 +172,16 @@ def score(controller, seeds=PRACTICE, arm=None):
 
 
 def score_of(runs):
-    """The Score of what `drive` has returned, a list."""
+    """Return the Score of a list of what `drive` has returned."""
     return Score(np.max([grade_run(given, recording.u, q) for given, recording, q in runs], axis=0))
 
 
 def contest(controller, name):
-    """Enter the contest: RUNS arms drawn for this attempt only. Prints term by term; keeps the attempt, won or lost.
+    """Enter the contest on RUNS arms drawn for this attempt only; print term by term; keep the attempt, won or lost.
 
-    controller: any object with `step`; what runs is this object, in Python, not a twin. name: what you changed, kept
-    with the attempt and shown in `history`. Returns the Score. Raises what the controller raises: that attempt is lost.
+    controller: any object with `step`; this object itself runs, in Python, not a twin. name: what you changed, kept
+    with the attempt and shown in `history`. Returns the Score. Raises what the controller raises: then the attempt is
+    lost.
     """
     check_controller(controller)
     arm = load_arm()
@@ -205,10 +216,10 @@ def _keep(entry):
 
 
 def twin_of(controller, arm=None):
-    """The compiled PID that does what this controller does, or None.
+    """Return the compiled PID that does what this controller does, or None.
 
-    Built from its gains `kp`, `ki`, `kd`; both see the same angles of a practice run, noise included, and have to
-    send the same commands within a thousandth of a count.
+    It is built from the gains `kp`, `ki`, `kd`. Both see the same angles of a practice run, noise included, and have to
+    send the same commands to within a thousandth of a count.
     """
     if is_compiled(controller):
         return controller

@@ -1,4 +1,4 @@
-"""Pictures of the contest: a practice run under sliders, and all attempts beside the tuning rules."""
+"""Pictures of the contest: a practice run under sliders, and all attempts next to the tuning rules."""
 
 import numpy as np
 
@@ -15,9 +15,9 @@ _MARKERS = dict(zip(contest.LIMITS, "osv^D", strict=True))
 
 
 class Practice:
-    """Angles and commands of a run on the first practice arm, three columns; `show(run)` draws it.
+    """Angles and commands of a run on the first practice arm, in three columns; `show(run)` draws it.
 
-    Args: arm: Arm. Attributes: figure; recording, the last run's.
+    Args: arm: Arm. Attributes: figure; recording, that of the last run.
     """
 
     def __init__(self, arm):
@@ -49,7 +49,7 @@ class Practice:
 
 
 def gain_sliders(gains):
-    """Nine sliders kp1 to kd3 for `live`; they begin at gains (3, 3): rows kp, ki, kd, columns joints."""
+    """Return nine sliders kp1 to kd3 for `live`; they begin at gains (3, 3), rows kp, ki, kd, columns joints."""
     made = {}
     for (part, (end, step)), row in zip(_SLIDERS.items(), gains, strict=True):
         for joint, gain in enumerate(row, start=1):
@@ -62,7 +62,7 @@ def sliders_of(controller, arm, practice):
     """Return (update, words): the callback of a panel's sliders, and a sentence that says whose controller they move.
 
     The picture is that of one arm, the score that of all practice arms.
-    While the compiled twin sends the same commands as the student's class, the twin runs; else the student's Python.
+    If the compiled twin sends the same commands as the student's class, the twin runs; else the student's Python.
     """
     compiled = contest.twin_of(controller, arm) is not None
 
@@ -103,7 +103,10 @@ def sliders_of(controller, arm, practice):
 
 
 def history(rules=None):
-    """All attempts, the best so far as a line; rules: {name: Score}, lines beside them. Returns LabFigure."""
+    """Draw all attempts, the best so far as a line, and next to them lines for rules, {name: Score}.
+
+    Returns: LabFigure.
+    """
     attempts = lab_book.read()["contest"]
     figure, ax = subplots(9.0, 3.6)
     ax.axhspan(0.1, 1, color="#E5F3EC")

@@ -1,4 +1,4 @@
-"""Pictures of notebook 08: a push against the weight, where pushes end; trembling."""
+"""Pictures of notebook 08: a push against the weight, where pushes end, and trembling."""
 
 import numpy as np
 
@@ -7,7 +7,10 @@ from ir50p_lab.modelling.dynamics import gravity
 
 
 def weight_over_angle(arm, push):
-    """Plot the counts that hold the shoulder over its angle, elbow straight, beside a constant push: LabFigure."""
+    """Plot the counts that hold the shoulder over its angle, elbow straight, with a constant push.
+
+    Returns: LabFigure.
+    """
     figure, ax = subplots(7.4, 3.8)
     q2 = np.linspace(arm.q_min[1], arm.q_max[1], 200)
     weight = gravity(arm, np.column_stack([0 * q2, q2, 0 * q2]))[:, 1] / arm.actuators.gain[1]
@@ -25,7 +28,7 @@ def weight_over_angle(arm, push):
 
 
 def ends(pushes, angles, target):
-    """Plot where the shoulder ends under constant pushes: LabFigure."""
+    """Plot where the shoulder ends under constant pushes. Returns: LabFigure."""
     figure, ax = subplots(7.4, 3.4)
     ax.plot(pushes, angles, "o", ms=8, label="after 30 s")
     ax.axhline(target, **SETPOINT, label="wanted")
@@ -35,7 +38,7 @@ def ends(pushes, angles, target):
 
 
 class Trembling:
-    """A controller that is shown what the simulated bench would show it: whole steps, and a wobble of one (rms)."""
+    """A controller that sees angles as the simulated bench shows them: whole steps, and a wobble of one (rms)."""
 
     unit = "PWM"
 
@@ -45,12 +48,12 @@ class Trembling:
         self.reset()
 
     def reset(self):
-        """Begin anew: the controller without a memory, where it has one, and the same trembling."""
+        """Begin anew with the same trembling; a controller that has a memory forgets."""
         self.random = np.random.default_rng(1)
         if hasattr(self.controller, "reset"):
             self.controller.reset()
 
     def step(self, t, q, reference):
-        """Hand on the angles, shaken."""
+        """Pass on the angles, shaken, and return the command."""
         seen = self.one * np.round(q / self.one + self.random.normal(size=3))
         return self.controller.step(t, seen, reference)

@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import notebook_tasks
 
 
 def rule(K, T, L, tau_c):
-    """Kp, Ki and Kd for a joint whose speed answers a push with K, T and L (SIMC)."""
+    """Return Kp, Ki and Kd for a joint whose speed answers a push with K, T and L (SIMC)."""
     gain, Ti = 1 / (K * (tau_c + L)), 4 * (tau_c + L)
     return gain * (1 + T / Ti), gain / Ti, gain * T
 

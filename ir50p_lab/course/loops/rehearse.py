@@ -1,4 +1,4 @@
-"""Before a controller of the student's goes to a real arm, it drives the simulated one, in the open."""
+"""Before a controller of the student's goes to a real arm, it drives the simulated one, where everybody can see it."""
 
 import warnings
 
@@ -13,19 +13,19 @@ _SECONDS = 10.0
 
 
 class RehearsalError(LabError):
-    """A controller that leaves the joint limits in ten seconds on the simulated arm: it does not go to a real one."""
+    """The controller leaves the joint limits within ten seconds on the simulated arm: it does not go to a real one."""
 
 
 def rehearse(controller, reference, *, arm=None, show=True, **view):
-    """Ten seconds on the simulated arm, from its rest pose, shown; then the same controller, to go on with.
+    """Run ten seconds on the simulated arm, from its rest pose, and show them; then return the same controller.
 
         with connect() as bench:
             bench.start(rehearse(pid, target), target)
 
     Args: controller: any object with `step`; reference: as for `simulate`. arm: Arm (default: that of the course).
-    show: False shows nothing; view: options of LiveArm, as `ball`.
-    Returns: the controller, reset if it can be. Raises RehearsalError, naming joint, time and angle, if a joint would
-    leave its limits.
+    show: False shows nothing; view: options of LiveArm, such as `ball`.
+    Returns: the controller, reset if that is possible. Raises RehearsalError, naming joint, time and angle, if a joint
+    would leave its limits.
     """
     arm = load_arm() if arm is None else arm
     start, unit = rest_pose(arm), getattr(controller, "unit", "PWM")

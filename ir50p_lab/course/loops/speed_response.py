@@ -1,4 +1,4 @@
-"""The speed of joint 1 when its counts jump: what section 4 of 09 reads a small model from. Simulated."""
+"""The speed of joint 1 when its counts jump, from which section 4 of 09 reads a small model. Simulated."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ class _OneJump:
 
 
 def speed_jump(arm, before, after, *, seed):
-    """Joint 1 from `before` to `after` counts at 1 s: t (n,) s, counts (n,) and the measured speed (n,) rad/s."""
+    """Let joint 1 jump from `before` to `after` counts at 1 s: t (n,) s, counts (n,) and measured speed (n,) rad/s."""
     run = simulate(arm, _OneJump(before, after), q0=[_START, 0, 0], duration=_END)
     heard = np.concatenate([np.zeros(_WIRE), run.qd[:-_WIRE, 0]])
     noise = np.random.default_rng(seed).normal(0, _NOISE, len(heard))

@@ -19,7 +19,10 @@ def three_columns(panel):
 
 
 def one_joint(*runs, labels, joint, unit="PWM"):
-    """Angle above, command below, of one joint (1, 2, 3) in several runs; the first's target dashed: LabFigure."""
+    """Draw angle and command of one joint (1, 2, 3) in several runs; the first's target is dashed.
+
+    Returns: LabFigure.
+    """
     figure, above, below = subplots(9.0, 4.0, rows=2, sharex=True)
     reference = np.asarray(runs[0].reference)
     reference = reference[:, 0] if reference.ndim == 3 else reference
@@ -34,7 +37,7 @@ def one_joint(*runs, labels, joint, unit="PWM"):
 
 
 def tuning_panel(run_of, *, joint, **gains):
-    """The picture of `one_joint` under sliders: each place of them is a run with those gains. Returns: LivePanel.
+    """Return a LivePanel of `one_joint` under sliders: for each position of them a run with those gains.
 
     Args: run_of: f(**gains) -> SimulationResult; it runs the student's own PID. joint: 1, 2, 3. gains: name=(least,
     most, step, start).
@@ -60,7 +63,10 @@ def tuning_panel(run_of, *, joint, **gains):
 
 
 def speed_step(t, speed, fitted=None):
-    """A measured answer of the speed (n,) rad/s to a jump at 1 s, and what was fitted to it: LabFigure."""
+    """Draw a measured answer of the speed (n,) rad/s to a jump at 1 s, and what was fitted to it.
+
+    Returns: LabFigure.
+    """
     figure, ax = subplots(8.0, 3.0)
     ax.plot(t, speed, ".", color=COLOURS["grey"], label="measured speed of joint 1")
     if fitted is not None:

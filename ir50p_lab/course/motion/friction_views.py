@@ -1,4 +1,4 @@
-"""Notebook 07: what drags the waist, its picture, and a lift."""
+"""Notebook 07: the torque that drags the waist, its picture, and a lift."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -17,9 +17,9 @@ _BRAKE = 1e4  # N m: a friction that nothing overcomes
 
 
 def dragged(arm, speed, *, wires):
-    """Torque that drags the waist at a steady speed: N m.
+    """Return the torque that drags the waist at a steady speed, N m.
 
-    Simulated: a stiff controller pulls, shoulder and elbow are held; the mean of the third second.
+    Simulated: a stiff controller drags it, shoulder and elbow are held, and the third second is averaged.
 
     Args: arm: Arm; speed: rad/s, not 0; wires: of its motor, "cut", or "joined" as at 0 counts.
     """
@@ -38,14 +38,14 @@ def dragged(arm, speed, *, wires):
 
 
 def seconds_to_lift(arm, counts):
-    """Time until the shoulder of the level arm is at 0.5 rad with these counts (3,), s."""
+    """Return the time until these counts (3,) have lifted the shoulder of the level arm to 0.5 rad, s."""
     push = SimpleNamespace(unit="PWM", step=lambda t, q, reference: counts)
     lifted = simulate(arm, push, duration=5, stops=True, table=0.0)
     return lifted.t[np.argmax(lifted.q[:, 1] > 0.5)]
 
 
 def friction_figure(speeds, torques, law=None):
-    """Torques that drag a joint over its speed (dots), and a law of friction through them: Figure 1.9. LabFigure.
+    """Draw torques that drag a joint over its speed (dots), and a law of friction (Figure 1.9). Returns: LabFigure.
 
     Args: speeds, torques (n,): what was found, rad/s, N m; law: function of one speed, N m; None: dots alone.
     """

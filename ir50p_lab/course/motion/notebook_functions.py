@@ -8,13 +8,13 @@ from ir50p_lab.modelling.friction import friction_torque as friction
 
 
 def falling(t, x):
-    """The rates (6,) of the state x: angles and speeds of an arm without motors and friction."""
+    """Return the rates (6,) of the state x: angles and speeds of an arm without motors and friction."""
     arm = load_arm().without_friction()
     return np.concatenate([x[3:], forward_dynamics(arm.theta, x[:3], x[3:], np.zeros(3), g=arm.g)])
 
 
 def halve(too_much, too_short, enough):
-    """The shortest time (s) for which too_much(time) is not above 0, by ten halvings."""
+    """Return the shortest time (s) for which too_much(time) is not above 0, by ten halvings."""
     for _ in range(10):
         middle = (too_short + enough) / 2
         if too_much(middle) > 0:
@@ -25,17 +25,17 @@ def halve(too_much, too_short, enough):
 
 
 def slide(speed, taken):
-    """Speed (rad/s) that dry friction leaves, which can take `taken` of it, and never more than there is."""
+    """Return the speed (rad/s) that dry friction leaves: it can take `taken` of it, but never more than there is."""
     return np.sign(speed) * max(abs(speed) - taken, 0.0)
 
 
 def motor_factors(N, kt, ke, Ra, V):
-    """Torque of one count, N m, and of one rad/s, N m s/rad, of a motor behind its gear."""
+    """Return the torque of one count, N m, and of one rad/s, N m s/rad, for a motor behind its gear."""
     return N * kt * V / (255 * Ra), N**2 * kt * ke / Ra
 
 
 def counts_for(q, qd, qdd):
-    """The counts (3,) that a motion takes."""
+    """Return the counts (3,) that a motion takes."""
     arm = load_arm()
     torque = inverse_dynamics(arm.without_friction(), q, qd, qdd)
     rubbing, brake = friction(arm, qd), arm.actuators.back_emf_damping * qd

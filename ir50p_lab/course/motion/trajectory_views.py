@@ -9,12 +9,12 @@ from ir50p_lab.course.draw.traces import STAMP
 
 
 def motion(t, x, last=None):
-    """A run of `integrate`, x (n, 6) over t (n,), up to a row, as `LiveArm` plays it."""
+    """Return a run of `integrate`, x (n, 6) over t (n,), up to a row, in the form that `LiveArm` plays."""
     return SimpleNamespace(t=t[:last], q=x[:last, :3], simulated=True)
 
 
 def one_step():
-    """One step along a curve: by the rate at its start, and by the rate halfway: LabFigure."""
+    """Draw one step along a curve: by the rate at its start, and by the rate halfway. Returns: LabFigure."""
     figure, ax = subplots(7.5, 3.6)
     t = np.linspace(-0.15, 1.25, 100)
     ax.plot(t, np.exp(t), color=COLOURS["grey"], label="the curve, which nobody knows")
@@ -27,7 +27,7 @@ def one_step():
 
 
 def orders(steps, errors):
-    """Errors (n,) of each method against the steps (n,) s on logarithmic axes, {method: mm}: LabFigure."""
+    """Draw errors (n,) of each method, {method: mm}, over steps (n,) s on logarithmic axes. Returns: LabFigure."""
     figure, ax = subplots(7.5, 3.6, note=STAMP)
     for name, error in errors.items():
         slope = np.polyfit(np.log(steps), np.log(error), 1)[0]
@@ -57,7 +57,7 @@ def bill_panel():
 
 
 def honey(M):
-    """Four brakes, N m s/rad, each twice the one before: steps of 10 ms are too long for the last.
+    """Return four brakes, N m s/rad, each twice the one before: steps of 10 ms are too long for the last.
 
     M: (3, 3) kg m^2. The rates are the eigenvalues of M^-1 b; a step of dt is stable below 2.785 / rate.
     """
@@ -67,7 +67,10 @@ def honey(M):
 
 
 def two_paths(t, paths):
-    """Two paths of the arm over t (n,) s, {name: tips (n, 3) m and angles (n, 3) rad}: their heights and speeds."""
+    """Draw heights and speeds of two paths of the arm over t (n,) s. Returns: LabFigure.
+
+    paths: {name: tips (n, 3) m and angles (n, 3) rad}.
+    """
     figure, plane, ax = subplots(9.6, 3.9, cols=2, note=STAMP)
     for (name, (tips, q)), style in zip(paths.items(), ("-", ":"), strict=True):
         plane.plot(np.hypot(tips[:, 0], tips[:, 1]), 1000 * tips[:, 2], style, color=COLOURS["dark"], label=name)

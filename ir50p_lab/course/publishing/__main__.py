@@ -1,4 +1,4 @@
-"""`python -m ir50p_lab.course.publishing NOTEBOOK...`: behind the command `export`."""
+"""`python -m ir50p_lab.course.publishing NOTEBOOK...`, which the command `export` runs."""
 
 import argparse
 import sys
@@ -9,7 +9,7 @@ from ir50p_lab.errors import LabError
 
 
 def main(arguments=None):
-    """Export the notebooks named; return the exit code."""
+    """Export the given notebooks; return the exit code."""
     parser = argparse.ArgumentParser(
         prog="python3 -m ir50p_lab export",
         description="Run notebooks and write each as one HTML page that needs no network, and as PDF.",

@@ -1,6 +1,6 @@
 """The course as a book: the pages of `export` with a bar, a search and a reference. `python3 -m ir50p_lab book`.
 
-The notebooks are run as they are, each in a home of its own: a page shows what readers meet who have written
+The notebooks are run as they are, each with a home of its own: a page shows what readers see who have written
 nothing yet. A copy that was run is used again until its notebook or the package changes.
 """
 
@@ -31,7 +31,7 @@ _TITLE = "The IR50P lab book"
 
 
 def book(to, *, run=True):
-    """Write the book into a folder; return its first page. run: else with the outputs that are stored.
+    """Write the book into a folder; return its first page. run: False takes the outputs that are stored.
 
     Raises LabError if a cell fails.
     """

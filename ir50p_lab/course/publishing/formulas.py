@@ -9,7 +9,7 @@ _FORMULA = re.compile(r"\$\$(.+?)\$\$|\$(.+?)\$", re.DOTALL)
 
 
 def mathml(latex, *, block=False):
-    """A formula as MathML, its LaTeX as the alternative text; as LaTeX where the converter does not know it."""
+    """Return a formula as MathML with its LaTeX as alternative text, or as LaTeX if the converter does not know it."""
     try:
         return convert(latex.strip(), display="block" if block else "inline").replace(
             "<math ", f'<math alttext="{html.escape(latex.strip())}" ', 1
@@ -19,7 +19,7 @@ def mathml(latex, *, block=False):
 
 
 def mathml_in(output):
-    """A cell's output with its LaTeX as HTML."""
+    """Return a cell's output with its LaTeX as HTML."""
     data = output.get("data", {})
     if "text/latex" in data and "text/html" not in data:
         latex = data.pop("text/latex")

@@ -10,7 +10,7 @@ _SUBJECTS = (modelling, controllers, signals, simulation, bench, identification,
 
 
 def reference():
-    """Return the page as Markdown: a section a subject; below it each name, how it is called, and its docstring."""
+    """Return the page as Markdown: a section for each subject; in it each name, how it is called, and its docstring."""
     parts = [
         "# Public names",
         "`from ir50p_lab.SUBJECT import NAME`: what there is, with the docstrings of the package.",

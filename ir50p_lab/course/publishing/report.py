@@ -1,6 +1,6 @@
 """The lab report: what a student predicted, measured, explained, noted, kept and wrote, as one HTML file.
 
-`python3 -m ir50p_lab report` writes results/report_DATE.html in the student's folder, pictures inside.
+`python3 -m ir50p_lab report` writes results/report_DATE.html in the student's folder, pictures included.
 """
 
 import argparse

@@ -37,7 +37,7 @@ _RUNTIME = "pyodide.js pyodide.mjs pyodide.asm.wasm python_stdlib.zip".split()
 
 
 def build(pyodide, target):
-    """Write the site into a folder. pyodide: folder or address; only the packages that are needed are taken."""
+    """Write the site into a folder. pyodide: folder or address; only packages that are needed are taken."""
     try:
         from pyodide_lock import PyodideLockSpec
         from pyodide_lock.utils import add_wheels_to_spec

@@ -1,4 +1,4 @@
-"""What is the student's, out of a browser tab and into it: the report and a ZIP as links, a button for a ZIP.
+"""What belongs to the student, out of a browser tab and into it: report and ZIP as links, a button to put a ZIP in.
 
 `python3 -m ir50p_lab pack` writes such a ZIP with all recordings and reports of bench-test: one file to send.
 """
@@ -22,7 +22,7 @@ _FOLDERS = ("my_robot", "results")
 
 
 def take_home():
-    """Show two links and a button: your report, a ZIP with all that you wrote and measured, and a ZIP put in here.
+    """Show two links, your report and a ZIP with everything that you wrote and measured, and a button to put a ZIP in.
 
     On a laptop `python3 -m ir50p_lab update FILE.zip` takes the ZIP over; a ZIP that a laptop made goes into a tab by
     the button. Nothing that is here already is overwritten.
@@ -40,7 +40,7 @@ def take_home():
 
 
 def packed(folders=_FOLDERS) -> bytes:
-    """A ZIP with the folders named of `notebooks/`, and the exercises that are done."""
+    """Return a ZIP with these folders of `notebooks/`, and the exercises that are done."""
     files = [path for name in folders for path in (home() / name).rglob("*") if path.is_file()]
     kept = io.BytesIO()
     with zipfile.ZipFile(kept, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -67,7 +67,7 @@ def _put_in(upload, said):
 
 
 def main():
-    """Write the ZIP into this folder, with the recordings, and say what to do with it."""
+    """Write the ZIP with the recordings into the present folder, and say what to do with it."""
     path = Path(f"ir50p_{date.today():%Y-%m-%d}.zip").resolve()
     path.write_bytes(packed((*_FOLDERS, "recordings")))
     print(f"{path}: {path.stat().st_size / 1000:.0f} kB, with functions, results, recordings and reports of bench-test")

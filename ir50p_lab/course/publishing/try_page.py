@@ -18,12 +18,12 @@ _SOURCES = (NOTEBOOK, _STYLE, _SCRIPT, BUNDLE, Path(pages.__file__), Path(pictur
 
 
 def fingerprint():
-    """A number of what the page is made from: its notebook, the view of the arm, and how pages are written."""
+    """Return a hash of what the page is made from: its notebook, the view of the arm, and how pages are written."""
     return hashlib.sha256("".join(path.read_text("utf-8") for path in _SOURCES).encode()).hexdigest()
 
 
 def main():
-    """Run the notebook, write the page and what it was made from."""
+    """Run the notebook, and write the page and the hash of what it was made from."""
     (made,) = pages.export(NOTEBOOK, FOLDER, pdf=False, code=False, title="The IR50P lab book: a page to try")
     page, style, script = (path.read_text(encoding="utf-8") for path in (made, _STYLE, _SCRIPT))
     page = page.replace("</style></head>", f"{style}</style></head>", 1)

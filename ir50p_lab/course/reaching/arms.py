@@ -27,9 +27,9 @@ _POSES, _READINGS = 30, 50  # of a copy that is calibrated
 
 
 def camera_for(bench):
-    """The camera that stands over a bench, a Calibration with T_base_cam: the student's of 17, else the course's.
+    """Return the camera above a bench, a Calibration with T_base_cam: the student's of 17, else the course's.
 
-    Raises NotMeasuredError where it is not known where the student's camera stands.
+    Raises NotMeasuredError if it is not known where the student's camera stands.
     """
     camera = load_result("camera", bench, course=_course_camera)
     if camera.T_base_cam is None:
@@ -47,7 +47,7 @@ def _course_camera():
 
 
 def law_for(bench):
-    """The law of 14 for a bench, with friction by the plan (15): the student's `computed_torque`.
+    """Return the law of 14 for a bench, with friction by the plan (15): the student's `computed_torque`.
 
     Its model is the student's of 13 if that was measured on this bench, else the drawing's.
     """
@@ -64,7 +64,7 @@ def law_for(bench):
 
 
 def path(start, goal, seconds=4):
-    """The student's quintic from pose to pose, as Mover takes it. Raises VisionError where the goal is None."""
+    """Return the student's quintic from pose to pose, as Mover takes it. Raises VisionError if the goal is None."""
     if goal is None:
         raise VisionError("there is no pose to go to: no ball is seen, or the arm cannot go there; look at the picture")
 
@@ -75,9 +75,9 @@ def path(start, goal, seconds=4):
 
 
 def seen_circle(mask, radii):
-    """The pixel (column, row) of the best circle in a mask, by the student's `circle_votes`.
+    """Return the pixel (column, row) of the best circle in a mask, by the student's `circle_votes`.
 
-    Raises VisionError where none has a quarter of its votes.
+    Raises VisionError if none has a quarter of its votes.
     """
     points, inwards = edges_of(mask)
     votes = [with_neighbours(my_robot.circle_votes(points, inwards, r, mask.shape)) / (2 * np.pi * r) for r in radii]
@@ -89,22 +89,25 @@ def seen_circle(mask, radii):
 
 
 def locator_for(watch, camera):
-    """A BallLocator of the course that looks through `watch`; camera: its calibration, of pictures of any size."""
+    """Return a BallLocator of the course that looks through `watch`.
+
+    camera: its calibration, from pictures of any size.
+    """
     pinhole = camera.pinhole.scaled(watch.size)
     return BallLocator(watch, TablePlane(pinhole, inverse_transform(camera.T_base_cam)))
 
 
 def picture_with_ball(camera, place):
-    """A picture (RGB); in a rendered one somebody lays the ball at `place` (3,) m first."""
+    """Return a picture (RGB); for a rendered one somebody lays the ball at `place` (3,) m first."""
     if isinstance(camera, RenderedBench):
         camera.lay(place)
     return camera.read().image
 
 
 def follow_clicks(hand, watch, camera, eye):
-    """A PictureView; a click lays the ball there, and `hand`, a LiveArm, follows what `eye(picture, q)` makes of it.
+    """Return a PictureView: a click lays the ball there, and `hand`, a LiveArm, goes where `eye(picture, q)` says.
 
-    watch: what takes the pictures, camera: its calibration.
+    watch: what takes the pictures; camera: its calibration.
     """
     rest = np.array(hand.q)
 
@@ -119,15 +122,15 @@ def follow_clicks(hand, watch, camera, eye):
 
 
 def true_tip(bench):
-    """Where the tip of a simulated arm truly is, (3,) m; nan of a real one."""
+    """Return where the tip of a simulated arm truly is, (3,) m; nan for a real one."""
     return bench.plant.tip_true if bench.simulated and hasattr(bench, "plant") else np.full(3, np.nan)
 
 
 def on_copies(reach_for, arm, copies, ball, *, calibrated=False, knocked=(0, 0, 0)):
-    """What `reach_for(bench, camera)` gives on copies of the simulated arm, one row for each copy: an array.
+    """Return what `reach_for(bench, camera)` returns on copies of the simulated arm: an array, one row per copy.
 
     copies: their numbers; ball: (3,) m; calibrated: with the potentiometers of each copy calibrated as in 10;
-    knocked: (3,) degrees, by which its camera is turned about its own axes, and nobody has noticed.
+    knocked: (3,) degrees, by which its camera is turned about its own axes without anybody having noticed.
     """
     found = []
     for copy in tqdm(copies, leave=False):

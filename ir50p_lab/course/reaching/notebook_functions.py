@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import notebook_tasks
 
 
 def nearest(lens, on_line, hand):
-    """The point (3,) of the line through the lens and another point of it that is nearest to the hand."""
+    """Return the point (3,) nearest to the hand on the line through the lens and another point."""
     along = (on_line - lens) / np.linalg.norm(on_line - lens)
     return lens + (hand - lens) @ along * along
 

@@ -8,7 +8,10 @@ _ARRIVED = 1.5  # s after which a followed ball has been caught up with
 
 
 def looks_figure(tips, goal, lens, names=("one look", "two looks")):
-    """Tips (n, 2, 3) m about their goal (3,) m: as the lens (3,) m sees them, and along its line. LabFigure."""
+    """Draw tips (n, 2, 3) m about their goal (3,) m, as the lens (3,) m sees them and along its line.
+
+    Returns: LabFigure.
+    """
     line = (goal - lens) / np.linalg.norm(goal - lens)
     side = np.cross(line, (0, 0, 1)) / np.hypot(*line[:2])
     up = np.cross(side, line)
@@ -30,7 +33,10 @@ def looks_figure(tips, goal, lens, names=("one look", "two looks")):
 
 
 def follow_figure(logs, simulated):
-    """Followed balls: the table from above for the first FollowLog, how far each tip is ahead. Returns: LabFigure."""
+    """Draw followed balls: the table from above for the first FollowLog; how far ahead each tip is.
+
+    Returns: LabFigure.
+    """
     import pandas as pd
 
     note = "rendered pictures, simulated arm" if simulated else "real arm"

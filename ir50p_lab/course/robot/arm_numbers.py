@@ -1,4 +1,4 @@
-"""An arm handed over as plain numbers and arrays, the way the student's own functions take it."""
+"""An arm handed over as plain numbers and arrays, in the form in which the student's own functions take it."""
 
 from collections import namedtuple
 
@@ -8,7 +8,7 @@ from ir50p_lab.modelling.arm import Arm
 
 
 class Parts(namedtuple("Parts", "l m lc inertia rotor fv fc fs qs offset gain damping g limits")):
-    """The numbers of an arm. Arrays are copies: changing them changes no arm.
+    """The numbers of an arm. Its arrays are copies: changing them changes no arm.
 
     ======== ======================================================================= ==================
     field    meaning                                                                 shape, unit
@@ -23,8 +23,8 @@ class Parts(namedtuple("Parts", "l m lc inertia rotor fv fc fs qs offset gain da
     qs       Stribeck velocity                                                       (3,) rad/s
     offset   constant friction offset                                                (3,) N m
     gain     torque per PWM count                                                    (3,) N m
-    damping  back-EMF: the brake that a driven motor is                              (3,) N m s/rad
-    g        gravity                                                                 m/s^2
+    damping  back-EMF, by which a driven motor brakes itself                         (3,) N m s/rad
+    g        gravitational acceleration                                              m/s^2
     limits   lowest and highest joint angles                                         (2, 3) rad
     ======== ======================================================================= ==================
     """
@@ -33,10 +33,10 @@ class Parts(namedtuple("Parts", "l m lc inertia rotor fv fc fs qs offset gain da
 def parts(arm: Arm) -> Parts:
     """Return the numbers of an arm as the student's functions take them.
 
-    `Arm` measures link 1 with z along the column and link 3 with z along its joint; the DH frames at the ends of these
+    `Arm` measures link 1 with z along the column and link 3 with z along its joint. The DH frames at the ends of these
     links have y there (alpha = +90 and -90 deg), so that Iyy and Izz of links 1 and 3 are exchanged.
 
-    An arm without motors has no rotors and no back-EMF, 0, and no gain, nan.
+    An arm without motors has rotors and back-EMF 0, and gain nan. Returns: Parts.
     """
     motors = arm.actuators
     rotor, gain, damping = np.zeros(3), np.full(3, np.nan), np.zeros(3)

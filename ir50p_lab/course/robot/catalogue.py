@@ -40,30 +40,30 @@ _at = {}  # stage of each function that this session works on
 
 
 def function_of(name):
-    """The function that a stage belongs to: "PID" of "PID.pi"; any other name is its own."""
+    """Return the function to which a stage belongs, "PID" for "PID.pi"; any other name is its own."""
     return name.partition(".")[0]
 
 
 def notebook_of(name):
-    """Number of the notebook that asks for a function, "02"."""
+    """Return the number of the notebook that asks for a function, such as "02"."""
     return next(number for number, names in NOTEBOOKS.items() if function_of(name) in names)
 
 
 def is_function(name):
-    """Tell whether a name is a function of `my_robot`, or a stage of one."""
+    """Return True if a name is a function of `my_robot`, or a stage of one."""
     return name in ORDER or name in STAGES.get(function_of(name), ())
 
 
 def stays(name):
-    """Tell whether a name is that of a function that stays in its notebook."""
+    """Return True if a name is that of a function that stays in its notebook."""
     return name in IN_NOTEBOOK
 
 
 def work_at(name):
-    """Take up a function at a stage: this session uses that stage from now on, all others the whole."""
+    """Take up a function at a stage: this session uses that stage from now on, and the whole of all others."""
     _at[function_of(name)] = name
 
 
 def at_work(name):
-    """The stage of a function that this session works on, or the function itself."""
+    """Return the stage of a function on which this session works, or the function itself."""
     return _at.get(name, name)

@@ -1,4 +1,4 @@
-"""The robot as a picture: which of its functions are the student's."""
+"""The robot as a picture that shows which of its functions are the student's."""
 
 from ir50p_lab.course.draw.style import COLOURS, subplots
 from ir50p_lab.course.robot.catalogue import NOTEBOOKS, ORDER
@@ -17,7 +17,7 @@ _LINE = 0.23  # from one name to the next, in units of the drawing
 
 
 def owned(whose):
-    """The robot with its parts: green what is the student's, amber what is on loan, grey the course's: LabFigure.
+    """Return a LabFigure of the robot's parts: green if the student's, amber if on loan, grey if the course's.
 
     Each square bears the name of its function, and the number of the notebook that asks for it.
     whose: "yours", "on loan" or "the course's" by the name of each function.

@@ -1,4 +1,4 @@
-"""The folder `my_robot`: a plain Python package of what the student has written, importable without this one."""
+"""The folder `my_robot`: a plain Python package with what the student has written, importable without this one."""
 
 import importlib.util
 import sys
@@ -21,22 +21,22 @@ lookup_cache = {}  # what `my_robot` has just looked up; empty when a function w
 
 
 def folder() -> Path:
-    """Where the student's functions are: `my_robot` in the student's folder."""
+    """Return where the student's functions are: `my_robot` in the student's folder."""
     return home.home() / "my_robot"
 
 
 def path_of(name) -> Path:
-    """The file of one function, whatever its stage; the underscore keeps module and function apart."""
+    """Return the file of one function, whatever its stage; the underscore keeps module and function apart."""
     return folder() / f"_{function_of(name)}.py"
 
 
 def read(path):
-    """Return the text of a file of a function. Raises LabError if another program has saved it in another encoding."""
+    """Return the text of a function's file. Raises LabError if another program has saved it in another encoding."""
     return home.read_text(path, LabError)
 
 
 def is_there(name):
-    """Tell whether a function, or this stage of one, is in the folder, the student's or on loan."""
+    """Return True if a function, or this stage of one, is in the folder, whether it is the student's or on loan."""
     if not path_of(name).exists():
         return False
     first = read(path_of(name)).partition("\n")[0]
@@ -44,15 +44,15 @@ def is_there(name):
 
 
 def on_loan(name):
-    """Tell whether a function in the folder is the course's."""
+    """Return True if a function in the folder is the course's."""
     return is_there(name) and read(path_of(name)).startswith(_LOAN)
 
 
 def keep(source, task, find, *, loan=""):
     """Write a function with its small test, and the list of what there is. What was there before goes to `old`.
 
-    Functions that it calls and that are not there yet come along on loan; find: gives the Task of one by its name.
-    Returns their names. Raises OSError: of a function all files are written, or none.
+    Functions that it calls and that are not there yet come along on loan; find: returns the Task of one by its name.
+    Returns their names. Raises OSError; either all files of a function are written, or none.
     """
     folder().mkdir(parents=True, exist_ok=True)
     lent = []
@@ -109,7 +109,7 @@ def _put_back(path, content):
 
 
 def load(name):
-    """The function from the folder, read again when a file has changed. What is wrong in a file is raised."""
+    """Return the function from the folder, read again if a file has changed. Raises what is wrong in a file."""
     files = sorted(folder().glob("_*.py"))
     stamp = tuple((path.name, path.stat().st_mtime_ns, path.stat().st_size) for path in files)
     if _import_state["stamp"] != (folder(), stamp):

@@ -9,7 +9,7 @@ from ir50p_lab.modelling.chain import frames
 
 
 def from_above(angle):
-    """Two points at distance 1 and where a turn by `angle` (rad) takes them: LabFigure."""
+    """Draw two points at distance 1, and where a turn by `angle` (rad) takes them. Returns: LabFigure."""
     figure, ax = sketch.from_above(5.2, title="From above: the waist turns counter-clockwise")
     circle = np.linspace(0, 2 * np.pi, 181)
     ax.plot(np.cos(circle), np.sin(circle), color=COLOURS["light"], zorder=1)
@@ -27,7 +27,9 @@ def from_above(angle):
 
 
 def turned_by(arm, rot_z):
-    """f(q) -> (4, 4, 4): frames of the arm with its waist turned by `rot_z`, right or wrong; the rest is the course's.
+    """Return f(q) -> (4, 4, 4): frames of the arm with its waist turned by `rot_z`, whether right or wrong.
+
+    The rest of the frames is the course's.
 
     rot_z: f(angle) -> (3, 3); what is still `...` in it counts as 0.
     """
@@ -42,7 +44,10 @@ def turned_by(arm, rot_z):
 
 
 def speed_over_time(run, joint, end=1.4):
-    """Speed of one joint (1 to 3) of a simulated run until `end` s, with a line at 63 % of its most: LabFigure."""
+    """Draw the speed of one joint (1 to 3) of a simulated run until `end` s. Returns: LabFigure.
+
+    A line marks 63 % of its most.
+    """
     figure, ax = subplots(8, 3.4)
     speed = run.qd[:, joint - 1]
     ax.plot(run.t, speed, label=f"joint {joint}", linewidth=2)

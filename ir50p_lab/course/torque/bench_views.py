@@ -22,7 +22,7 @@ class Rate:
         self.last, self.rate = None, np.zeros(3)
 
     def of(self, error):
-        """The rate (3,) after one more error (3,), 10 ms later."""
+        """Return the rate (3,) after one more error (3,), 10 ms later."""
         if self.last is not None:
             self.rate = self.rate + _SHARE * ((error - self.last) / 0.01 - self.rate)
         self.last = error
@@ -32,8 +32,9 @@ class Rate:
 class OnBench:
     """The student's `computed_torque` every 10 ms, in counts.
 
-    Args: model(q, qd, qdd, direction): counts (3,); into(q, qd, reference): place, speed and direction that the model
-    is given, three vectors; speed: of the loop, rad/s, one number or (3,), those of Tables 4.5-4.7.
+    Args: model(q, qd, qdd, direction) returns counts (3,); into(q, qd, reference) returns the place, speed and
+    direction that the model gets, three vectors; speed: of the loop, rad/s, one number or (3,), by default those of
+    Tables 4.5-4.7.
     """
 
     unit = "PWM"
@@ -47,7 +48,7 @@ class OnBench:
         self._rate = Rate()
 
     def step(self, t, q, reference):
-        """The counts (3,) for one sample."""
+        """Return the counts (3,) for one sample."""
         qd = reference[1] + self._rate.of(q - reference[0])
         place, speed, direction = self.into(q, qd, reference)
 
@@ -61,8 +62,8 @@ class OnBench:
 class Learning:
     """Adaptive control: u = Y theta - 60 s, with s = de/dt + 4 e; theta learns by the student's `adaptive_step`.
 
-    Y is the student's `regressor` at what would bring s to nothing. A joint at its limit does not learn.
-    Args: theta (3, 20) counts, where it begins; gain (3, 20). Attributes: theta, beliefs: a theta for each sample.
+    Y is the student's `regressor` for the motion that would bring s to zero. A joint at its limit does not learn.
+    Args: theta (3, 20) counts, where it begins; gain (3, 20). Attributes: theta; beliefs: a theta for each sample.
     """
 
     unit = "PWM"
@@ -76,7 +77,7 @@ class Learning:
         self.theta, self.beliefs, self._rate = self.start.copy(), [], Rate()
 
     def step(self, t, q, reference):
-        """The counts (3,) for one sample."""
+        """Return the counts (3,) for one sample."""
         e = q - reference[0]
         rate = self._rate.of(e)
         s = rate + 4 * e
@@ -88,9 +89,9 @@ class Learning:
 
 
 def driven_on_bench(arm, controller, reference, seconds, *, copy_of=None):
-    """A run on the simulated bench, from where the reference begins: a Recording, and what the arm truly did.
+    """Run on the simulated bench, from where the reference begins: a Recording, and what the arm truly did.
 
-    copy_of: Arm whose simulated copy is driven, as one with a load; None: arm.
+    copy_of: Arm whose simulated copy is driven, such as one with a load; None: arm.
     """
     bench = SimulatedBench(copy_of or arm, q0=reference(0)[0], record_to=False).open()
     record = bench.follow(controller, reference, seconds)
@@ -98,7 +99,7 @@ def driven_on_bench(arm, controller, reference, seconds, *, copy_of=None):
 
 
 def model_for(arm, bench=None):
-    """theta (3, 20) in counts for a bench, and whose it is: the student's of 13, else the course's.
+    """Return theta (3, 20) in counts for a bench, and whose it is: the student's of 13, else the course's.
 
     bench: an open bench; None: the simulated one. The course's is identified from 110 simulated seconds.
     """
@@ -108,7 +109,7 @@ def model_for(arm, bench=None):
 
 
 def go(arm, controller_of, reference, seconds):
-    """The loop of 08 on the arm that answers, from the rest pose and back: its Recording, and whose model drove it.
+    """Run the loop of 08 on the arm that answers, from the rest pose and back: its Recording, and whose model drove it.
 
     controller_of: function of a theta (3, 20), the one that was measured on that arm.
     """
@@ -118,7 +119,7 @@ def go(arm, controller_of, reference, seconds):
 
 
 def table_of_gains(theta, columns):
-    """Gains (3, 20) of what may learn: 0 elsewhere; 60 for the offsets, else 0.2 (1 + |theta|)."""
+    """Return the gains (3, 20) of what may learn: 60 for the offsets, else 0.2 (1 + |theta|); 0 for the rest."""
     gain = np.zeros((3, 20))
     gain[:, columns] = 0.2 * (1 + np.abs(theta[:, columns]))
     gain[:, [k for k in columns if k in (16, 17, 18)]] = 60

@@ -17,7 +17,7 @@ ABOVE_THE_BALL = np.array([0.42, -0.15, 0.09])  # m, as in 00
 
 
 def kept_path(arm):
-    """07's path from rest to above the ball, and its seconds: the shortest for which 250 counts do, and 0.1 s more."""
+    """Return 07's path from rest to above the ball, and its seconds: 0.1 s more than the least for 250 counts."""
     rest = rest_pose(arm)
     there = my_robot.reach(ABOVE_THE_BALL, arm.l, rest, parts(arm).limits)
 
@@ -30,21 +30,21 @@ def kept_path(arm):
 
 
 def driven(arm, controller, reference, seconds, **options):
-    """A simulated run from where the reference begins."""
+    """Return a simulated run from where the reference begins."""
     if hasattr(controller, "reset"):
         controller.reset()
     return simulate(arm, controller, reference, q0=reference(0)[0], duration=seconds, **options)
 
 
 def beside(run, l, calm=1):
-    """How far the tip is from where the reference is at that moment, (n,) mm; the mean of `calm` samples each."""
+    """Return how far the tip is from where the reference is just then, (n,) mm: means of `calm` samples."""
     planned = run.reference if run.reference.ndim == 2 else run.reference[:, 0]
     off = np.lib.stride_tricks.sliding_window_view(_tips(run.q, l) - _tips(planned, l), calm, axis=0)
     return 1000 * np.linalg.norm(off.mean(axis=-1), axis=1)
 
 
 def clearance(run, l, ball, radius=0.03):
-    """Least distance of the tip from the skin of the ball, mm."""
+    """Return the least distance of the tip from the skin of the ball, mm."""
     return 1000 * (np.linalg.norm(_tips(run.q, l) - ball, axis=1).min() - radius)
 
 
@@ -53,7 +53,7 @@ def _tips(q, l):
 
 
 class PushAndPD:
-    """P and D of 08 (1000 and 40), and beside them the counts that `push(q, reference)` gives."""
+    """P and D of 08 (1000 and 40), plus the counts that `push(q, reference)` returns."""
 
     unit = "PWM"
 
@@ -62,7 +62,7 @@ class PushAndPD:
         self.reset = self.pid.reset
 
     def step(self, t, q, reference):
-        """The counts (3,) for one sample."""
+        """Return the counts (3,) for one sample."""
         return np.clip(self.pid.step(t, q, reference) + self.push(q, reference), -255, 255)
 
 
@@ -78,7 +78,7 @@ def robustness(arm, path, seconds):
 
 
 def bars(values, ylabel):
-    """A bar for each name: {name: value}. LabFigure."""
+    """Draw a bar for each name, {name: value}. Returns: LabFigure."""
     figure, ax = subplots(8.0, 3.2, note=STAMP)
     drawn = ax.bar(list(values), list(values.values()), color=COLOURS["blue"])
     ax.bar_label(drawn, fmt="%.3g")

@@ -8,32 +8,32 @@ from ir50p_lab.modelling import gravity, inverse_dynamics, load_arm
 
 
 def carry(q):
-    """The counts (3,) that hold the weight in the pose q."""
+    """Return the counts (3,) that hold the weight in the pose q."""
     return gravity(load_arm(), q) / load_arm().actuators.gain
 
 
 def cancel(x, v):
-    """The push with which the pendulum in the state x (angle, speed) accelerates with v."""
+    """Return the push with which the pendulum in the state x (angle, speed) accelerates with v."""
     return v + 9.81 * np.sin(x[0]) + 0.2 * x[1]
 
 
 def model(q, qd, qdd):
-    """The torques (3,) N m that a motion takes, without friction."""
+    """Return the torques (3,) N m that a motion takes, without friction."""
     return inverse_dynamics(load_arm().without_friction(), q, qd, qdd)
 
 
 def pushes(theta, q, qd, qdd, direction):
-    """The counts (3,) of a motion, by the rows of a theta (3, 20)."""
+    """Return the counts (3,) of a motion, by the rows of a theta (3, 20)."""
     return np.sum(regressor(q, qd, qdd, direction) * theta, axis=1)
 
 
 def into(q, qd, plan):
-    """What the model is given on the bench: place, speed and direction."""
+    """Return what the model gets on the bench: place, speed and direction."""
     return q, plan[1], np.sign(plan[1])
 
 
 def planned(model, plan):
-    """The counts (3,) that the plan takes, by a model; nothing that is measured goes in."""
+    """Return the counts (3,) that the plan takes, by a model; nothing that is measured goes in."""
     return model(plan[0], plan[1], plan[2], np.sign(plan[1]))
 
 

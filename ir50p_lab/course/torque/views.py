@@ -11,24 +11,24 @@ from ir50p_lab.identification import fit, process, regressor
 
 
 def thesis_pid():
-    """The PID of Tables 4.1-4.3 behind a 3 Hz filter on the angles, in PWM counts."""
+    """Return the PID of Tables 4.1-4.3 behind a 3 Hz filter on the angles, in PWM counts."""
     gains = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30)}
     return PID(**gains, limit_pwm=255, position_filter_hz=3.0, filter_hz=np.inf)
 
 
 def training_run(arm, *, seed=0):
-    """A recording to identify from, on the simulated bench: the first motion of notebook 13, thesis's PID."""
+    """Return a recording to identify from: the first motion of notebook 13, the thesis's PID, simulated."""
     return simulated(arm, thesis_pid(), kept_motion(arm), 110.0, seed=seed)
 
 
 def naive_model(recording):
-    """As the thesis identifies: causal 3 Hz, differences, one theta for all joints, least squares (4.4): Estimate."""
+    """Return an Estimate made as in the thesis: causal 3 Hz, differences, one theta for all, least squares (4.4)."""
     motion = process(recording, derivatives="causal", cutoff_hz=3.0)
     return fit(regressor(motion.q, motion.qd, motion.qdd), motion.u, rows="shared", columns="thesis")
 
 
 def lateness(t, angle, reference, *, joint):
-    """How many seconds later than the reference a joint moves (negative: ahead): the shift that fits best.
+    """Return how many seconds later than the reference a joint moves (negative: ahead): the shift that fits best.
 
     Args: t (n,) s, angle (n,) rad of the joint; reference; joint: 0, 1, 2. The first 3 s do not count.
     """
@@ -38,7 +38,7 @@ def lateness(t, angle, reference, *, joint):
 
 
 class RobustnessView:
-    """Left: largest RMS error over model scale and loop speed; right: the errors of one choice, joint by joint.
+    """Left: the largest RMS error over model scale and loop speed; right: the errors of one choice, joint by joint.
 
     Args: scales (m,): model over arm; speeds (n,): sqrt(Kp), rad/s; run: function (scale, speed) -> SimulationResult.
     Attributes: figure; rms (m, n) mrad, the largest of the three joints. `update(scale, speed)` draws one choice.

@@ -11,7 +11,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "robot": [
             "COLUMNS",
             "OnLegs",
-            "PracticeWay",
+            "PracticePath",
             "Rate",
             "find_balls",
             "motion",

@@ -34,7 +34,10 @@ _EYE, _AIM = 0.06, 0.03  # m by which the camera's place, and the place that it 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """arm; delay: periods from a sample to its action; balls (3, 3): their centres, m; camera: Pinhole and its pose."""
+    """An arm drawn from a seed. delay: periods from a sample to its action; balls: (3, 3), their centres, m; camera.
+
+    camera is a Pinhole and its pose.
+    """
 
     arm: Arm
     delay: int
@@ -44,7 +47,7 @@ class Drawn:
     seed: int
 
     def machine(self):
-        """The simulated arm at the start pose."""
+        """Return the simulated arm at the start pose."""
         return SimulatedArm(self.arm, replace(TOUCH, delay=self.delay), self.seed, q0=START)
 
     @property
@@ -57,7 +60,7 @@ class Drawn:
 
 @lru_cache(maxsize=64)
 def drawn(seed):
-    """The Drawn of a whole number of any size, the same for the same number. Its motors bear its weight."""
+    """Return the Drawn of a whole number of any size, the same for the same number. Its motors bear its weight."""
     rng = np.random.default_rng([seed, 19])
     arm = _arm(rng, seed)
     while not _bears_its_weight(arm):

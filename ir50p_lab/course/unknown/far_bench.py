@@ -35,22 +35,25 @@ class FarBench:
         self.recording, self.ended, self._counts = None, "", None
 
     def look(self):
-        """A picture (h, w, 3) of the balls on the table; the arm stands aside. Raises InputError when all are taken."""
+        """Return a picture (h, w, 3) of the balls on the table; the arm stands aside.
+
+        Raises InputError if all are taken.
+        """
         said = self._ask({"op": "look"})
         pixels = zlib.decompress(base64.b64decode(said["picture"]))
         return np.frombuffer(pixels, np.uint8).reshape(said["shape"])
 
     def drive(self, u):
-        """Send counts (3,), rounded and held to +-255, and return what is sent. Raises InputError for what is none."""
+        """Send counts (3,), rounded and held to +-255, and return what is sent. Raises InputError for anything else."""
         self._counts = np.clip(np.rint(vector3("u", u, unit="counts")), -255, 255)
         return self._counts
 
     def run(self, seconds):
-        """Yield the samples of a practice run, from the start pose; it ends early when no time is left."""
+        """Yield the samples of a practice run, from the start pose; it ends early if no time is left."""
         return self._samples({"op": "practice", "seconds": seconds})
 
     def race(self):
-        """Yield the samples of the race, 20 s at most; there is one. Raises InputError for a second."""
+        """Yield the samples of the race, at most 20 s; there is only one. Raises InputError for a second."""
         return self._samples({"op": "race"})
 
     def _samples(self, question):

@@ -1,4 +1,4 @@
-"""A hand-in as one text: `unknown_arm` and all that it rests on, out of the cells of the notebook."""
+"""A hand-in as one text: `unknown_arm` and everything on which it rests, out of the cells of the notebook."""
 
 import ast
 import inspect
@@ -19,7 +19,7 @@ def hand_in(function):
     """Write `results/unknown_arm.py`, which is handed in and judged, and return its Path.
 
     function: of the notebook, called unknown_arm; what it calls comes along. Raises InputError if dots are left
-    in it, or where it needs a thing that is neither a function nor plain numbers.
+    in it, or if it needs a thing that is neither a function nor plain numbers.
     """
     path = home.home() / "results" / f"{NAME}.py"
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -28,7 +28,7 @@ def hand_in(function):
 
 
 def text_of_hand_in(function):
-    """The text that `hand_in` writes."""
+    """Return the text that `hand_in` writes."""
     if not inspect.isfunction(function) or function.__name__ != NAME:
         raise InputError(f"a hand-in is a function called `{NAME}`, of the bench; this is {function!r:.60}")
     if is_open(function):
@@ -42,7 +42,7 @@ def text_of_hand_in(function):
 
 
 def lent(text):
-    """Names of the functions of the notebook that are the course's in a hand-in, as its imports say."""
+    """Return the names of the notebook's functions that are the course's in a hand-in, as its imports say."""
     return tuple(sorted(re.findall(r"^from ir50p_lab\.course\.unknown\.notebook_functions import (\w+)", text, re.M)))
 
 

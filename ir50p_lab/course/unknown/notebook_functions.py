@@ -14,43 +14,49 @@ _DELAYS = 0.05, 0.06, 0.07  # s
 
 
 def both_ways(x):
-    """A signal (n,) low-passed at 2 Hz forwards and backwards, so that it is late by nothing."""
+    """Return a signal (n,) low-passed at 2 Hz forwards and backwards, so that it does not lag at all."""
     return low_pass(low_pass(x, 2, 100)[::-1], 2, 100)[::-1]
 
 
 def with_a_pull(A, y):
-    """A (n, k) and y (n,) with k rows more, which pull each number weakly to zero: what no row tells stays small."""
+    """Return A (n, k) and y (n,) with k more rows, which draw each number weakly to zero.
+
+    So a number about which no row tells anything stays small.
+    """
     pull = np.diag(np.linalg.norm(A, axis=0)) * _PULL * np.sqrt(len(y))
     return np.vstack([A, pull]), np.concatenate([y, np.zeros(len(pull))])
 
 
 def acted(u, delay):
-    """The counts (n, 3) that act in each period, of those (n, 3) that were sent in it; delay: s."""
+    """Return the counts (n, 3) that act in each period, from those (n, 3) that were sent in it; delay: s."""
     late = round(delay / 0.01)
     return np.concatenate([np.zeros((late, 3)), u[: len(u) - late]])
 
 
 def fit_joint(Y, y, use):
-    """The numbers (k,) of one joint, from columns (n, k) and counts (n,), filtered alike, at the rows to use (n,)."""
+    """Return the numbers (k,) of one joint, from columns (n, k) and counts (n,), filtered alike.
+
+    use: (n,) bool, the rows that count.
+    """
     A = np.apply_along_axis(both_ways, 0, Y)[use]
     theta, _ = least_squares(*with_a_pull(A, both_ways(y)[use]))
     return theta
 
 
 def most_counts(theta, a, b, seconds):
-    """The largest push, counts, that a theta (3, 20) asks for on the quintic from a to b."""
+    """Return the largest push, counts, that a theta (3, 20) asks for on the quintic from a to b."""
     plans = [quintic(a, b, seconds, t) for t in np.linspace(0, seconds, 15)]
     return np.max([np.abs(np.sum(regressor(*plan, np.tanh(plan[1] / 0.05)) * theta, axis=1)) for plan in plans])
 
 
 def when_it_acts(off, off_rate, plan_at, delay):
-    """Place, speed and plan (3, 3) that a command of now meets: the plan of then, and a drift that goes on."""
+    """Return place, speed and plan (3, 3) that a command of now meets: the plan of then, and a drift that goes on."""
     plan = plan_at(delay)
     return plan[0] + off + delay * off_rate, plan[1] + off_rate, plan
 
 
 def camera_at(K, corners, points):
-    """T_base_cam (4, 4) from the pixels (4, 2) of four places (4, 3) m of the table."""
+    """Return T_base_cam (4, 4) from the pixels (4, 2) of four places (4, 3) m of the table."""
     G = np.linalg.solve(homography(corners, points[:, :2]) @ K, np.eye(3))
     G = G / np.linalg.norm(G[:, 0]) * np.sign(G[2, 2])
     R = np.column_stack([G[:, 0], G[:, 1], np.cross(G[:, 0], G[:, 1])])

@@ -11,19 +11,22 @@ FAST = 3.6  # s: a median of at most this wins
 
 @dataclass(frozen=True)
 class Raced:
-    """Of one arm: its world, with the way of the arm in it; void: why the race does not count, or ""."""
+    """The race on one arm.
+
+    world: that of the arm, with the arm's path in it; void: why the race does not count, or "".
+    """
 
     world: World
     void: str = ""
 
     @property
     def touched(self):
-        """How many balls."""
+        """How many balls were touched."""
         return 0 if self.void else int(BALLS - np.isnan(self.world.touched).sum())
 
     @property
     def seconds(self):
-        """Of the last touch, or more where a ball is missing; a void race is one without a touch."""
+        """The time of the last touch, s, or more if a ball is missing; a void race counts as one without a touch."""
         return END + MISSING * BALLS if self.void else self.world.score
 
     def __str__(self):
@@ -39,7 +42,7 @@ class RaceDay:
 
     @property
     def median(self):
-        """Seconds."""
+        """The median of the races' times, s."""
         return float(np.median([one.seconds for one in self.races]))
 
     @property
@@ -49,7 +52,7 @@ class RaceDay:
 
     @property
     def won(self):
-        """Whether it was fast, and complete on 19 of 20 arms or more."""
+        """Whether the median is fast enough, and the race complete on at least 19 of 20 arms."""
         return self.median <= FAST and self.complete >= 0.95 * len(self.races)
 
     def __str__(self):

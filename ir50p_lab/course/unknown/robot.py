@@ -1,4 +1,4 @@
-"""Notebook 19, what is given: eyes, safe ways, the motion behind a recording. It runs the student's own functions."""
+"""Notebook 19, what is given: eyes, safe paths, the motion behind a recording. It runs the student's own functions."""
 
 import itertools
 from types import SimpleNamespace
@@ -21,7 +21,7 @@ _VIA = np.array([0, 0.16, 0])  # rad: higher in the middle
 
 
 def motion(recording, both_ways):
-    """What a recording tells: Y (n, 3, 20) by the student's regressor, moving (n, 3) bool, the rows to use.
+    """Return what a recording tells: Y (n, 3, 20) by the student's regressor, and moving (n, 3) bool, the rows to use.
 
     both_ways: the student's filter, of a signal (n,).
     """
@@ -36,7 +36,10 @@ def motion(recording, both_ways):
 
 
 def find_balls(bench, camera_at):
-    """Centres (3, 3) m of three red balls in one picture; camera_at(K, corners, points): T_base_cam."""
+    """Return the centres (3, 3) m of three red balls in one picture.
+
+    camera_at(K, corners, points) returns T_base_cam.
+    """
     T = camera_at(bench.K, bench.corners, bench.points)
     mask = my_robot.hue_mask(bench.look(), _RED, _WIDE)
     points, inwards = edges_of(mask)
@@ -62,13 +65,13 @@ def _circle(points, inwards, radius, shape):
 
 
 def clearance(a, b, l):
-    """How low elbow or tip come on the straight way from pose a to pose b, m."""
-    way = a + np.linspace(0, 1, 13)[:, None] * (b - a)
-    return min(my_robot.frames(q, l)[2:, 2, 3].min() for q in way)
+    """How low elbow or tip come on the straight path from pose a to pose b, m."""
+    poses = a + np.linspace(0, 1, 13)[:, None] * (b - a)
+    return min(my_robot.frames(q, l)[2:, 2, 3].min() for q in poses)
 
 
-class PracticeWay:
-    """A way between safe poses, drawn as it goes on: way(t) is q, qd, qdd (3, 3) at a time t, which only grows."""
+class PracticePath:
+    """A path between safe poses, drawn as it goes on: path(t) is q, qd, qdd (3, 3) at a time t, which only grows."""
 
     def __init__(self, bench, seed):
         self._bench, self._rng = bench, np.random.default_rng(seed)
@@ -92,9 +95,9 @@ class PracticeWay:
 
 
 def plan(bench, balls, seconds_for):
-    """The legs of the race, [(a, b, seconds, whether b is at a ball)]: of the six orders the quickest.
+    """Return the legs of the race, [(a, b, seconds, whether b is at a ball)]: of the six orders the quickest.
 
-    seconds_for(a, b): how long a leg may take. Where the straight way comes low, it goes over a higher pose.
+    seconds_for(a, b): how long a leg may take. If the straight path comes too low, it goes over a higher pose.
     """
     poses = [my_robot.reach(ball + _OVER, bench.l, bench.start, bench.limits) for ball in balls]
     return min((_legs(bench, order, seconds_for) for order in itertools.permutations(poses)), key=_lasts)

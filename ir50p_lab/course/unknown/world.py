@@ -1,4 +1,4 @@
-"""The world of one unknown arm: it answers what a bench asks, and counts touches. Who asks never holds arm or balls.
+"""The world of one unknown arm: it answers what a bench asks, and counts touches. Nobody who asks holds arm or balls.
 
 Questions and answers are dictionaries of numbers and texts alone, so that they fit through a pipe as lines of JSON.
 """
@@ -27,17 +27,20 @@ class World:
     """One unknown arm, its balls and its camera; seed: a whole number, of all of it.
 
     Attributes: given: Drawn; left: s of practice; pictures: how many may still be taken; raced; touched (3,): s at
-    which each ball was touched, nan for never; knocked (3,) bool; way: [(t, q true)] of the race; ended: how the last
+    which each ball was touched, nan for never; knocked (3,) bool; path: [(t, q true)] of the race; ended: how the last
     run did.
     """
 
     def __init__(self, seed):
         self.given, self.left, self.pictures, self.raced, self.ended = drawn(seed), PRACTICE, PICTURES, False, ""
-        self.touched, self.knocked, self.way = np.full(BALLS, np.nan), np.zeros(BALLS, dtype=bool), []
+        self.touched, self.knocked, self.path = np.full(BALLS, np.nan), np.zeros(BALLS, dtype=bool), []
         self._rng, self._run = np.random.default_rng([seed, 4]), None
 
     def answer(self, question):
-        """What the bench answers to a question, {"op": ...} or {"u": counts}. Raises InputError on what is neither."""
+        """Return what the bench answers to a question, {"op": ...} or {"u": counts}.
+
+        Raises InputError for anything else.
+        """
         if self._run is not None and "u" in question:
             return self._run.send(vector3("the counts of drive", question["u"], unit="counts"))
         self._run = None  # who asks for something else has left the run
@@ -59,7 +62,7 @@ class World:
 
     @property
     def score(self):
-        """Seconds: of the last touch, or, where a ball is missing, those of the race and some for each."""
+        """The score, s: the time of the last touch; if a ball is missing, that of the race and more for each."""
         missing = int(np.isnan(self.touched).sum())
         return END + MISSING * missing if missing else float(self.touched.max())
 
@@ -117,7 +120,7 @@ class World:
                     self.ended = "all are touched"
                     break
             if race:
-                self.way.append((k * PERIOD, machine.q_true))
+                self.path.append((k * PERIOD, machine.q_true))
             else:
                 self.left = began - (k + 1) * PERIOD
             touched = int(BALLS - np.isnan(self.touched).sum())

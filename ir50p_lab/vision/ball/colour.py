@@ -14,13 +14,13 @@ _PINK, _CLIPPED = 24, 245
 
 @dataclass(frozen=True)
 class Colour:
-    """A range of hues, and how strong the colour must be; light and shade change value, hardly hue.
+    """A range of hues, and how strong the colour must be. Light and shade change the value, but hardly the hue.
 
     Args:
         hue: middle of the range, degrees 0..360; the range may cross the seam of the scale, 360 = 0.
         tolerance: half width of the range, degrees, 1..60.
-        saturation: least saturation, 0..1: below it lie grey, white, and highlights. There is no upper bound: the
-            most saturated pixels are the surest (4.5.1 throws away those above 0.8).
+        saturation: least saturation, 0..1: below it lie grey, white, and highlights. There is no upper bound, because
+            the most saturated pixels are the surest (4.5.1 throws away those above 0.8).
         value: least value, 0..1: in darker pixels the hue is noise.
         name: its name in messages.
 
@@ -41,7 +41,7 @@ class Colour:
 
     @property
     def swaps(self):
-        """True if red and blue are exchanged before the hue is taken, so that the range does not cross the seam."""
+        """Whether red and blue are exchanged before the hue is taken, so that the range does not cross the seam."""
         return min(self.hue, 360 - self.hue) < self.tolerance + 1
 
     @property
@@ -50,7 +50,9 @@ class Colour:
         return float((240.0 - self.hue) % 360.0 if self.swaps else self.hue)
 
     def bounds(self, saturation=None):
-        """Lower and upper bound for cv2.inRange, in OpenCV's scale (0..179, 0..255, 0..255), of `hsv_of(image)`.
+        """Return the lower and upper bound for cv2.inRange of `hsv_of(image)`.
+
+        They are in OpenCV's scale, 0..179, 0..255, 0..255.
 
         saturation: a stricter least saturation, 0..1.
         """
@@ -59,10 +61,10 @@ class Colour:
         return low, (min(179, round((self.centre + self.tolerance) / 2)), 255, 255)
 
     def loose_mask(self, hsv):
-        """255 where an HSV picture of `hsv_of` has the colour as dim or glaring light shows it: darker, paler; (h, w).
+        """Return 255 where an HSV picture of `hsv_of` has the colour in dim or glaring light, darker or paler: (h, w).
 
-        Too much light makes a red pink: red is clipped, blue is not. A red with more green than blue (hue above 0)
-        turns orange and yellow: of such a red only what is not overexposed is found.
+        Too much light makes a red pink, because red is clipped and blue is not. A red with more green than blue (hue
+        above 0) turns orange and yellow; of such a red only the part that is not overexposed is found.
         """
         low, high = replace(self, saturation=0.7 * self.saturation, value=0.4 * self.value).bounds()
         found = cv2.inRange(hsv, low, high)
@@ -72,11 +74,14 @@ class Colour:
         return found
 
     def hsv_of(self, image):
-        """HSV of an RGB picture, in OpenCV's scale; with red and blue exchanged for a colour at the seam."""
+        """Return the HSV of an RGB picture in OpenCV's scale, with red and blue exchanged for a colour at the seam."""
         return cv2.cvtColor(image, cv2.COLOR_BGR2HSV if self.swaps else cv2.COLOR_RGB2HSV)
 
     def mask(self, image, saturation=None):
-        """255 where the picture (RGB uint8, (h, w, 3)) has this colour, else 0: (h, w) uint8."""
+        """Return (h, w) uint8: 255 where the picture (RGB uint8, (h, w, 3)) has this colour, else 0.
+
+        saturation: a stricter least saturation, 0..1.
+        """
         return cv2.inRange(self.hsv_of(check_image(image)), *self.bounds(saturation))
 
 

@@ -1,7 +1,7 @@
-"""Is it a ball? Nine numbers about an outline and its colours, weighed by a logistic regression.
+"""Is it a ball? Nine numbers about an outline and its colours are weighed by a logistic regression.
 
-Its weights were fitted to rendered scenes with red balls and things like them; no photograph was among them. The number
-that speaks most against a ball is given as the reason.
+Its weights were fitted to rendered scenes with red balls and similar things; no photograph was among them. The number
+that counts most against a ball is given as the reason.
 """
 
 import cv2
@@ -33,7 +33,7 @@ _GLOSS = 0.35  # share of the disc: if highlights cover more, they are another c
 
 
 def judge(image, outline, colour):
-    """(score 0..1, why it is not a ball, or "") of an Outline in an RGB picture (h, w, 3)."""
+    """Return (score 0..1, the reason why it is not a ball, or "") for an Outline in an RGB picture (h, w, 3)."""
     r, on = outline.radius, outline.on
     hsv, loose, filled, fill, beyond = _colours(image, outline, colour)
     why = _other_shape(outline, filled)

@@ -1,4 +1,4 @@
-"""Find balls of one colour in a picture: where, how large, how sure; or why there is none."""
+"""Find balls of one colour in a picture: where they are, how large and how sure; or why there is none."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ _F = 0.9  # focal length over the longer side of the picture if no camera is giv
 
 @dataclass(frozen=True)
 class Ball:
-    """A ball: x, y where the centre of the sphere is seen, px; radius px; score 0..1."""
+    """A ball. x, y: where the centre of the sphere is seen, px; radius: px; score: 0..1."""
 
     x: float
     y: float
@@ -32,7 +32,10 @@ class Ball:
 
 
 class Balls(list):
-    """The balls found, best first; reason: if none, why; rejected: ((x, y, radius), why) of others, likeliest first."""
+    """The balls found, best first.
+
+    reason: if there are none, why; rejected: ((x, y, radius), why) of others, the likeliest first.
+    """
 
     def __init__(self, balls=(), *, reason="", rejected=()):
         super().__init__(balls)
@@ -43,16 +46,17 @@ class Balls(list):
 
 
 def find_balls(image, colour=RED, *, camera=None, least_radius=6.0):
-    """Find the balls of a colour in an RGB picture (h, w, 3) uint8, best first: Balls.
+    """Find the balls of a colour in an RGB picture (h, w, 3) uint8; return Balls, the best first.
 
-    Regions of the colour give circles. Around each the edge is measured along rays, and the cone of sight through it
-    fitted: x, y is where the centre of the sphere is seen, not the middle of its outline. Nine numbers about outline
-    and colours decide whether it is a ball; each circle that is refused has its reason. If there is none, red and blue
-    are exchanged once: a ball that is seen then is no result, but the reason says that the picture may be BGR.
+    Regions of the colour give circles. Around each circle the edge is measured along rays, and the cone of sight is
+    fitted to it: x, y is where the centre of the sphere is seen, not the middle of its outline. Nine numbers about
+    outline and colours decide whether it is a ball; each circle that is refused has its reason. If there is no ball,
+    red and blue are exchanged once: a ball that is seen then is no result, but the reason says that the picture may be
+    BGR.
 
     Args:
-        colour: Colour, default RED; camera: Pinhole or Calibration if known, else one without distortion is assumed
-        that sees 58 degrees across; least_radius: px, smaller balls are refused.
+        colour: Colour, default RED. camera: Pinhole or Calibration if known; otherwise one without distortion is
+        assumed that sees 58 degrees across. least_radius: px, smaller balls are refused.
 
     Raises ImageError for what is not a colour picture, InputError for a bad argument, CalibrationError for a picture of
     another size than the camera's.

@@ -1,4 +1,7 @@
-"""Where a ball might be: circles that fit the regions of its colour. Most are not; each is measured afterwards."""
+"""Where a ball might be: circles that fit the regions of its colour. Most are none; each is measured afterwards.
+
+Most of them are none; each is measured afterwards.
+"""
 
 import cv2
 import numpy as np
@@ -16,7 +19,10 @@ _NEW = 0.25  # radii: if a circle differs less from an earlier one, place and si
 
 
 def guess_circles(image, colour, least_radius):
-    """Circles [(x, y, r)] px that regions of a Colour in an RGB picture (h, w, 3) may be, longest arcs first."""
+    """Return circles [(x, y, r)] px that may fit regions of a Colour in an RGB picture (h, w, 3).
+
+    Those with the longest arcs come first. least_radius: px; those well below it are left out.
+    """
     scale = max(1, round(max(image.shape) / _LONGER_SIDE))
     small = cv2.resize(image, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
     found = []

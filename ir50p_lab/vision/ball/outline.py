@@ -1,12 +1,12 @@
 """The outline of a ball to a fraction of a pixel: edges along rays from its middle, and the cone of sight through them.
 
-The lines of sight that touch a sphere form a round cone about the direction n of its centre, half opening angle alpha.
-For the unit direction d of each edge point
+The lines of sight that touch a sphere form a round cone about the direction n of its centre, with half opening angle
+alpha. For the unit direction d of each edge point
 
     d . n = cos(alpha),  so with m = n / cos(alpha):  d . m = 1,
 
-three unknowns in linear equations, as for a circle; perspective and lens are in it exactly. The picture shows an
-ellipse, longer away from the axis, and the centre of the sphere is not seen in its middle.
+which are linear equations in three unknowns, as for a circle, but with perspective and lens included exactly. The
+picture shows an ellipse, stretched away from the axis, and the centre of the sphere is not seen in its middle.
 """
 
 from dataclasses import dataclass
@@ -26,12 +26,12 @@ _LEAST_CONTRAST = 1.0  # if disc and surroundings differ by less (squared, in va
 
 @dataclass(frozen=True)
 class Outline:
-    """A measured outline, or why there is none.
+    """A measured outline, or the reason why there is none.
 
     x, y: middle, px; radius: of the circle of the same area, px; centre: (2,) px, where the sphere's centre is seen;
-    off: (rays,) px that the edge lies outside, inf where there is none; height: (rays,) of the edges, in units of the
-    contrast; seen: share of the outline in the picture; contrast: of the disc against its surroundings, in standard
-    deviations; why: the reason why there is none, else "".
+    off: (rays,) px by which the edge lies outside, inf where there is none; height: (rays,) of the edges, in units of
+    the contrast; seen: share of the outline that is in the picture; contrast: of the disc against its surroundings, in
+    standard deviations; why: the reason why there is no outline, else "".
     """
 
     x: float
@@ -46,12 +46,12 @@ class Outline:
 
     @property
     def on(self):
-        """Which rays (rays,) have their edge on the outline, within 5 % of the radius or 1.2 px."""
+        """Whether each of the rays (rays,) has its edge on the outline, within 5 % of the radius or 1.2 px."""
         return np.abs(self.off) < max(1.2, 0.05 * self.radius)
 
 
 def measure(image, pinhole, circle):
-    """The Outline near a circle (x, y, r) px in an RGB picture (h, w, 3) of a camera."""
+    """Return the Outline near a circle (x, y, r) px in an RGB picture (h, w, 3) that a camera (Pinhole) took."""
     x, y, r = circle
     for half, width in _PASSES:
         rho = r * np.linspace(1 - half, 1 + half, _SAMPLES)

@@ -9,7 +9,10 @@ UNIT = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])  # (rays, 2)
 
 
 def cast(image, x, y, rho):
-    """Colours (rays, m, 3) at the distances rho (m,) px from (x, y) px; which lie in the picture (rays, m)."""
+    """Return the colours (rays, m, 3) at distances rho (m,) px from (x, y) px.
+
+    Also returns which of these places are in the picture, bool (rays, m).
+    """
     px, py = x + rho * UNIT[:, :1], y + rho * UNIT[:, 1:]
     places = np.float32(px), np.float32(py)
     rgb = cv2.remap(image, *places, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)

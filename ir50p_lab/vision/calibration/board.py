@@ -1,4 +1,4 @@
-"""The boards a camera is calibrated with: what is printed on them, in metres."""
+"""The boards with which a camera is calibrated: what is printed on them, in metres."""
 
 from dataclasses import dataclass
 
@@ -10,12 +10,12 @@ from ir50p_lab.inputs import number
 
 @dataclass(frozen=True)
 class Checkerboard:
-    """A checkerboard of pattern = (columns, rows) inner corners, squares of `square` m.
+    """A checkerboard with pattern = (columns, rows) inner corners and squares of `square` m.
 
-    The board's frame: origin in the first inner corner, x along the columns, y along the rows, z into the board (away
-    from a camera that sees it upright). Where columns + rows is odd the first corner is the one whose outer
-    square is dark, as in a 9x6 board, so that the frame is the same in every picture; otherwise a board looks the same
-    turned by half a turn, and the frame is that nearer to the top left of the picture.
+    The board's frame has its origin in the first inner corner, x along the columns, y along the rows, z into the board
+    (away from a camera that sees it upright). If columns + rows is odd, the first corner is the one whose outer
+    square is dark, as in a 9x6 board, so that the frame is the same in every picture. Otherwise a board looks the same
+    after half a turn, and the frame is the one nearer to the top left of the picture.
 
     A wrong square size changes nothing but the scale of the distances: K and the distortion stay the same.
     Raises CalibrationError for a pattern below 3x3, InputError for a size that is not positive.
@@ -30,7 +30,7 @@ class Checkerboard:
 
     @property
     def points(self):
-        """Inner corners (columns * rows, 3) m, row by row."""
+        """The inner corners, (columns * rows, 3) m, row by row."""
         columns, rows = self.pattern
         grid = np.mgrid[0:columns, 0:rows].T.reshape(-1, 2) * self.square
         return np.column_stack([grid, np.zeros(len(grid))])
@@ -40,7 +40,7 @@ class Checkerboard:
 
 
 def check_pattern(pattern):
-    """(columns, rows) as ints. Raises CalibrationError for what cannot be a board."""
+    """Return (columns, rows) as ints. Raises CalibrationError for what cannot be a board."""
     try:
         columns, rows = (int(n) for n in pattern)
         whole = (columns, rows) == tuple(pattern)

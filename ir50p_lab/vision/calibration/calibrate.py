@@ -29,20 +29,20 @@ _USUAL = ("k1", "k2", "p1", "p2")  # k3 must be asked for: outside the outermost
 def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, progress=None):
     """Calibrate a camera from pictures of a checkerboard.
 
-    Corners are found and refined by OpenCV; pictures that are of no use are left out, each with a Reason; the camera is
+    OpenCV finds and refines the corners; pictures that are of no use are left out, each with a Reason; the camera is
     the least-squares fit of `cv2.calibrateCamera`; its standard errors are the larger of two kinds (`fit.errors`).
     If residuals become much smaller when every corner of the board may move, the board is bent: a warning says so, and
     its shape is estimated with the camera. A bend of 0.3 to 0.5 mm over 200 mm may pass for flat (12 views, corners to
-    0.1 px): fx was then off by 0.3 %, at most 1.2 %, that is two of its standard errors, at most five. A plate of glass
-    has no bend. The inner corners of a ChArUco board pass for those of a checkerboard, but its markers pull them by
-    half a pixel: take a plain one.
+    0.1 px): fx was then off by 0.3 %, at most 1.2 %, which is two of its standard errors, at most five. A plate of
+    glass has no bend. The inner corners of a ChArUco board pass for those of a checkerboard, but its markers displace
+    them by half a pixel: take a plain one.
 
     Args:
         images: list of pictures (h, w, 3) uint8 RGB, grey ones (h, w), Frames or paths, mixed; or a folder.
-        pattern: (columns, rows) of inner corners; square: side of a square, m. A wrong square scales the distances of
-        the board, nothing else: K and distortion come out the same.
+        pattern: (columns, rows) of inner corners; square: side of a square, m. A wrong square only scales the distances
+        of the board: K and distortion come out the same.
         lens: coefficients to estimate, out of k1, k2, p1, p2, k3; () for none.
-        progress: True or False to show a bar; None: from 8 pictures on.
+        progress: True or False to show a bar or not; None: if there are 8 pictures or more.
 
     Returns: Calibration.
     Raises CalibrationError if fewer than 3 pictures are of use (the message says why), or they determine no camera;
@@ -68,14 +68,14 @@ def calibrate(images, pattern=(9, 6), square=0.025, *, lens=_USUAL, progress=Non
 
 
 def calibrate_corners(object_points, image_points, size, *, lens=_USUAL):
-    """Calibrate from corners that were found elsewhere, on a board that is flat.
+    """Calibrate a camera from corners that were found elsewhere, on a flat board.
 
     Args:
         object_points: for each view the points on the board (n, 3) m, z = 0; or one array for all of them.
-        image_points: for each view the pixels (n, 2); also (n, 1, 2) as OpenCV has them.
+        image_points: for each view the pixels (n, 2), or (n, 1, 2) as in OpenCV.
         size: (width, height) of the picture, px. lens: as for `calibrate`.
 
-    Returns: Calibration. Raises CalibrationError as `calibrate`, InputError for shapes that do not fit, or NaN.
+    Returns: Calibration. Raises CalibrationError as `calibrate` does, InputError for shapes that do not fit, or NaN.
     """
     lens, size = _coefficients(lens), picture_size(size)
     if not np.iterable(image_points) or not np.iterable(object_points) or len(object_points) == 0:

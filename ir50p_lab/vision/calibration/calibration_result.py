@@ -1,4 +1,4 @@
-"""What a calibration found: the camera, its errors, the residuals of each picture, and which were not used."""
+"""What a calibration found: the camera, its errors, the residuals of each picture, and which pictures were not used."""
 
 from dataclasses import dataclass, field
 
@@ -16,9 +16,9 @@ LENS = NAMES[4:]
 class View:
     """One picture of the board that was used.
 
-    name, index: as in `Rejected`; points (n, 3) m on the board, of a bent one as estimated; corners (n, 2) px as found;
-    residuals (n, 2) px, found minus model; rms: of their lengths, px; T_cam_board (4, 4) takes board to camera
-    coordinates.
+    name, index: as in `Rejected`; points: (n, 3) m on the board, for a bent one as estimated; corners: (n, 2) px as
+    found; residuals: (n, 2) px, found minus model; rms: of their lengths, px; T_cam_board: (4, 4), takes board to
+    camera coordinates.
     """
 
     name: str
@@ -30,12 +30,12 @@ class View:
 
     @property
     def rms(self):
-        """Root mean square distance between found and model corners, px."""
+        """Root mean square distance between found corners and model, px."""
         return float(np.sqrt((self.residuals**2).sum(axis=1).mean()))
 
     @property
     def tilt(self):
-        """Angle between the board and the plane of the picture, rad."""
+        """Angle between the board and the image plane, rad."""
         return float(np.arccos(np.clip(abs(self.T_cam_board[2, 2]), 0, 1)))
 
 
@@ -51,14 +51,14 @@ class Calibration:
     distortion     k1, k2, p1, p2, k3 as in `Pinhole`; 0 where not estimated                                (5,)
     rms            root mean square distance between corners and model: sqrt(sum |e|^2 / N)                 px
     stderr         standard error of "fx", "fy", "cx", "cy", "k1"...: the larger of two kinds               dict
-                   (`fit.errors`); nan where not estimated. Of a bent board two to three times too small
-                   (halves of one set of photographs differed by 2.3 of them, root mean square)
+                   (`fit.errors`); nan where not estimated. For a bent board they are two to three times
+                   too small (halves of one set of photographs differed by 2.3 of them, root mean square)
     covariance     of fx, fy, cx, cy, k1, k2, p1, p2, k3 with those standard errors; 0 where not estimated  (9, 9)
-    views          View of each picture used                                                                tuple
-    rejected       Rejected: each picture not used, with a reason                                           tuple
+    views          a View for each picture that was used                                                    tuple
+    rejected       a Rejected for each picture that was not used, with a reason                             tuple
     warnings       doubts about it, as sentences                                                            tuple
     size           (width, height) of the pictures                                                          px
-    board          Checkerboard; None where the points were given
+    board          Checkerboard; None if the points were given
     model          lens coefficients that were estimated, such as ("k1", "k2")                              tuple
     sigma          standard deviation of a corner in x or y, from the residuals                             px
     T_base_cam     where it stands: takes camera to base coordinates; None: unknown                         (4, 4)
@@ -92,7 +92,7 @@ class Calibration:
 
     @property
     def view_rms(self):
-        """rms of each view, px, (v,)."""
+        """The rms of each view, px, (v,)."""
         return np.array([view.rms for view in self.views])
 
     def __getattr__(self, name):
@@ -101,19 +101,22 @@ class Calibration:
         raise AttributeError(f"Calibration has no {name!r}")
 
     def straighten(self, image):
-        """A picture of this camera without distortion; see `Pinhole.straighten`."""
+        """Return a picture of this camera without distortion; see `Pinhole.straighten`."""
         return self.pinhole.straighten(image)
 
     def save(self, path):
-        """Write a JSON file, in which cv2.FileStorage (and OpenCV's samples) find the camera. Returns the path."""
+        """Write a JSON file in which cv2.FileStorage (and OpenCV's samples) find the camera. Returns the path.
+
+        Raises CalibrationError if that fails.
+        """
         return save(self, path)
 
     @classmethod
     def load(cls, path, size=None):
-        """Read such a file.
+        """Read a file that `save` wrote.
 
-        size: (width, height) of the pictures it is for. Raises CalibrationError for a file that is missing or no
-        calibration, and for one of another picture size.
+        size: (width, height) of the pictures for which it is meant. Raises CalibrationError for a file that is missing
+        or no calibration, and for one of another picture size.
         """
         return load(cls, View, path, size)
 

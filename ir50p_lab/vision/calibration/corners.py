@@ -1,4 +1,4 @@
-"""Corners of a checkerboard in a picture, to a few hundredths of a pixel, or the reason why there are none to use."""
+"""Corners of a checkerboard in a picture, to a few hundredths of a pixel, or the reason why none can be used."""
 
 import cv2
 import numpy as np
@@ -20,13 +20,14 @@ _MARGIN = 1.3  # squares: if the picture ends nearer to the last corner, the nex
 
 
 def find_checkerboard(grey, pattern):
-    """All inner corners of a checkerboard, (n, 2) px in the order of `Checkerboard.points`.
+    """Return all inner corners of a checkerboard, (n, 2) px in the order of `Checkerboard.points`.
 
-    `findChessboardCornersSB` looks for the board or a larger one; where it sees none, `findChessboardCorners` is asked,
-    which is better in poor light. `cornerSubPix` refines the corners in a window from the size of the smallest square.
+    `findChessboardCornersSB` looks for the board or a larger one. If it sees none, `findChessboardCorners` is tried,
+    which is better in poor light. `cornerSubPix` refines the corners in a window that fits the size of the smallest
+    square.
 
     Args: grey: (h, w) uint8; pattern: (columns, rows).
-    Raises NotUsable with the Reason, CalibrationError for a pattern that cannot be.
+    Raises NotUsable with the Reason, CalibrationError for an impossible pattern.
     """
     pattern = check_pattern(pattern)
     cv2.setRNGSeed(0)  # the finders draw at random: a steep board at the border was seen in 19 of 20 calls

@@ -7,7 +7,7 @@ _TILTED = np.deg2rad(15)  # rad: if a board is tilted by less, it hardly tells t
 
 
 def odd_view(view_rms):
-    """Index of the view whose corners fit no camera that fits the others, or None; view_rms (v,) px."""
+    """Return the index of the view whose corners fit no camera that fits the others, or None. view_rms: (v,) px."""
     worst = int(np.argmax(view_rms))
     others = np.delete(view_rms, worst)
     # A view is odd if it is both 3 times the median and 8 times the scatter over the mean of the others.
@@ -16,7 +16,7 @@ def odd_view(view_rms):
 
 
 def warnings_about(found):
-    """Doubts about a Calibration, sentence by sentence.
+    """Yield the doubts about a Calibration, sentence by sentence.
 
     A webcam with square pixels and 10 to 20 good pictures stays within every limit.
     """

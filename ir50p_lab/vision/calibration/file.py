@@ -38,7 +38,7 @@ def _for_opencv(matrix):
 
 
 def load(calibration_class, view_class, path, size=None):
-    """Read what `save` wrote; see Calibration.load."""
+    """Read what `save` wrote; see `Calibration.load`."""
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8-sig")

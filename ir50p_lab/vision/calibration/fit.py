@@ -1,4 +1,4 @@
-"""The fit of a camera to corners on a board by OpenCV, and how far each of its numbers may be off."""
+"""The fit of a camera to the corners of a board by OpenCV, and how far each of its numbers may be off."""
 
 from dataclasses import dataclass
 
@@ -27,7 +27,9 @@ _FEW = "the lens needs more than {}, with which corners are {:.2g} px off, with 
 
 @dataclass(frozen=True, eq=False)
 class CameraFit:
-    """camera: (9,) fx, fy, cx, cy px, k1, k2, p1, p2, k3; points: (n, 3) m of each view; poses: (rvec, tvec) of each;
+    """A camera fitted to corners.
+
+    camera: (9,) fx, fy, cx, cy px, k1, k2, p1, p2, k3; points: (n, 3) m of each view; poses: (rvec, tvec) of each;
     residuals: (n, 2) px of each, found minus model; bent: whether the points were estimated with the camera.
     """
 
@@ -45,12 +47,12 @@ class CameraFit:
 
     @property
     def squares(self):
-        """Sum of squared residuals, px^2."""
+        """The sum of squared residuals, px^2."""
         return sum((e**2).sum() for e in self.residuals)
 
     @property
     def freedom(self):
-        """Degrees of freedom of the residuals: numbers measured less those estimated (nine of the camera)."""
+        """Degrees of freedom of the residuals: measured numbers minus those estimated (nine of the camera)."""
         shape = 3 * len(self.points[0]) - _GAUGE if self.bent else 0
         return max(1, sum(e.size for e in self.residuals) - 6 * len(self.poses) - len(self.camera) - shape)
 
@@ -61,9 +63,9 @@ class CameraFit:
 
 
 def fit(points, pixels, size, lens, start=None):
-    """CameraFit of points [(n, 3)] m seen at pixels [(n, 2)]: `cv2.calibrateCamera`.
+    """Return the CameraFit of points [(n, 3)] m that are seen at pixels [(n, 2)], by `cv2.calibrateCamera`.
 
-    lens: names of coefficients to estimate; start: K, needed where points are not flat.
+    lens: names of coefficients to estimate; start: K, needed if the points are not flat.
     Raises CalibrationError if OpenCV finds none.
     """
     flags = _flags(lens) | (0 if start is None else cv2.CALIB_USE_INTRINSIC_GUESS)
@@ -84,10 +86,11 @@ def _camera_fit(found, project, points, pixels):
 
 
 def fit_lens(points, pixels, size, lens):
-    """(CameraFit as of `fit`, doubt): doubt says in a sentence that the lens is outside the model, or is "".
+    """Return the CameraFit, as `fit` does, and a doubt: a sentence if the lens is outside the model, else "".
 
-    A fisheye is fitted, too, and from its K the camera once more (from its own start OpenCV may end far from the best
-    fit of a wide lens), also with all coefficients. If not even these leave residuals as small, it is a fisheye.
+    A fisheye is fitted as well, and from its K the camera once more (from its own start OpenCV may end far from the
+    best fit of a wide lens), also with all coefficients. If not even these leave residuals as small, the lens is a
+    fisheye.
     """
     fitted = fit(points, pixels, size, lens)
     try:
@@ -123,7 +126,7 @@ def _fit_fisheye(points, pixels, size):
 
 
 def fit_bent(flat, pixels, size, lens, columns):
-    """CameraFit with every corner of the board free, if that makes the residuals much smaller; else `flat`.
+    """Return a CameraFit with every corner of the board free if that makes the residuals much smaller; else `flat`.
 
     `cv2.calibrateCameraRO` (Strobl and Hirzinger 2011) frees the corners; the board keeps the size of its first row of
     `columns` corners.
@@ -139,9 +142,9 @@ def fit_bent(flat, pixels, size, lens, columns):
 
 
 def halves_agree(pixels, flat, size, lens, columns):
-    """Tell whether every second view shows the board bent as the others do; True where they are too few to tell.
+    """Return whether every second view shows the board bent as the others do; True if they are too few to tell.
 
-    What no lens explains can look like a bend; then each half of the views finds another.
+    What no lens explains can look like a bend; then each half of the views finds another one.
     """
     shapes = []
     for part in (slice(0, None, 2), slice(1, None, 2)):
@@ -153,18 +156,18 @@ def halves_agree(pixels, flat, size, lens, columns):
 
 
 def heights(points):
-    """Height of the points of a board (n, 3) above the plane nearest to them all, m."""
+    """Return the heights of the points of a board (n, 3) above the plane nearest to them all, m."""
     plane = np.column_stack([points[:, :2], np.ones(len(points))])
     return points[:, 2] - plane @ np.linalg.lstsq(plane, points[:, 2], rcond=None)[0]
 
 
 def errors(found, lens):
-    """(covariance (9, 9), sigma px, contradiction) of a CameraFit.
+    """Return (covariance (9, 9), sigma px, contradiction) of a CameraFit.
 
-    With J the derivative of all corners by camera, poses and, of a bent board, its points, and sigma^2 the mean squared
-    residual, V = sigma^2 (J^T J)^-1 takes the corners as independent; V' = (J^T J)^-1 (sum of g g^T) (J^T J)^-1,
-    g = J^T e of a view, takes only the views as independent (the sandwich of White 1980). The larger error of each
-    number is given. contradiction: error of fx by V' over that by V, at least 1.
+    With J the derivative of all corners by camera, poses and (for a bent board) its points, and sigma^2 the mean
+    squared residual, V = sigma^2 (J^T J)^-1 takes the corners as independent. V' = (J^T J)^-1 (sum of g g^T) (J^T J)^-1
+    with g = J^T e of a view takes only the views as independent (the sandwich of White 1980). The larger error of each
+    number is given. contradiction: error of fx by V' divided by that by V, at least 1.
     Raises CalibrationError if the views do not determine the camera.
     """
     basis = np.eye(9)[:, [name in (*NAMES[:4], *lens) for name in NAMES]]

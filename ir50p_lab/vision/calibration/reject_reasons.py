@@ -1,4 +1,4 @@
-"""Why a picture was not used for a calibration: a closed list for programs to act on, with a text for the reader."""
+"""Why a picture was not used for a calibration: a closed list on which programs can act, with a text for the reader."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -7,7 +7,7 @@ from enum import StrEnum
 class Reason(StrEnum):
     """Why a picture is left out; each value is the wording.
 
-    In the order in which they are tested: a picture gets the first that applies.
+    They are tested in this order, and a picture gets the first that applies.
     """
 
     UNREADABLE = "unreadable"  # missing, empty, or no picture
@@ -24,7 +24,7 @@ class Reason(StrEnum):
 class Rejected:
     """A picture that was not used.
 
-    name: file name or "picture 3"; index: its place among the pictures given; reason: Reason; detail: what was found,
+    name: file name or "picture 3"; index: its place among the given pictures; reason: Reason; detail: what was found,
     with numbers, and what to do.
     """
 
@@ -38,7 +38,7 @@ class Rejected:
 
 
 class NotUsable(Exception):  # noqa: N818 - inside the package: becomes a Rejected
-    """Raised where a picture turns out not to be usable, with Reason and detail.
+    """A picture turns out not to be usable; has the Reason and the detail.
 
     seen: (columns, rows) of the board that was found, if it is another one, or a part of it.
     """

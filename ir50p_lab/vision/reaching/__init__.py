@@ -1,1 +1,1 @@
-"""From the ball in the picture to the arm over it: locator, plan, motion, looking again."""
+"""From the ball in the picture to the arm above it: locator, plan, motion, looking again."""

@@ -22,8 +22,8 @@ _SPIKE = 5.0  # standard errors: if the picture asks a potentiometer to be off b
 class Seen:
     """What one look found.
 
-    position: (3,) m, ball's centre in the base frame, None if there was no ball (then `reason` says why); ball: Ball in
-    pixels; image: RGB; simulated: whether the picture was rendered.
+    position: (3,) m, the ball's centre in the base frame, or None if there was no ball (then `reason` says why); ball:
+    Ball in pixels; image: RGB; simulated: whether the picture was rendered.
     """
 
     position: np.ndarray | None
@@ -37,17 +37,17 @@ class Seen:
 
 
 class BallLocator:
-    """A camera that knows where it stands: ball and hand in the base frame of the arm.
+    """A camera that knows where it stands: it finds ball and hand in the base frame of the arm.
 
     Args:
         camera: what `open_camera()` gives, or anything with read() -> frame with .image (RGB) and .simulated.
-        plane: TablePlane of that camera. T_base_table: (4, 4), table coordinates to those of the base; default the
+        plane: TablePlane of that camera. T_base_table: (4, 4), takes table to base coordinates; default the
         identity: the board was laid out in base coordinates. (The thesis calls the table's frame 'world', and never
         writes this transform down.)
-        radius: m, of the ball. colour: Colour of the ball. marker_at: (3,) m, centre of the small ball on the hand in
+        radius: of the ball, m. colour: Colour of the ball. marker_at: (3,) m, centre of the small ball on the hand in
         tool coordinates (frame 3: origin at the tip, x along the forearm).
 
-    Attributes: marker: Colour of the small ball on the hand, GREEN; sigma_px: px, standard error of a centre.
+    Attributes: marker: Colour of the small ball on the hand, GREEN; sigma_px: standard error of a centre, px.
     """
 
     marker, sigma_px = GREEN, 0.3
@@ -59,12 +59,12 @@ class BallLocator:
         self.marker_at = vector3("marker_at", marker_at, unit="m")
 
     def look(self):
-        """Take a picture and find the best ball in it. Returns Seen, which is false if none is seen."""
+        """Take a picture and find the best ball in it. Returns Seen, which is false if no ball is seen."""
         frame = self.camera.read()
         return self.seen_in(frame.image, frame.simulated)
 
     def seen_in(self, image, simulated=False):
-        """As `look`, in a picture (RGB) that was already taken.
+        """Find the best ball in a picture (RGB) that was already taken; returns Seen, as `look` does.
 
         Raises CalibrationError if the picture is of another size than the calibration.
         """
@@ -79,24 +79,24 @@ class BallLocator:
         return Seen(transform_points(self.T_base_table, place), balls[0], image, simulated)
 
     def to_image(self, p):
-        """Pixel (2,) of a point p (3,) m of the base frame."""
+        """Return the pixel (2,) of a point p (3,) m of the base frame."""
         return self.plane.to_image(transform_points(inverse_transform(self.T_base_table), np.asarray(p, dtype=float)))
 
     def marker_place(self, arm, q):
-        """Where the marker is with the arm at q (3,) rad: (3,) m, base frame."""
+        """Return where the marker is in the base frame, (3,) m, with the arm at q (3,) rad."""
         return transform_points(frames(arm, q)[3], self.marker_at)
 
     def marker_pixel(self, arm, q):
-        """Pixel (2,) where the marker should be seen with the arm at q (3,) rad."""
+        """Return the pixel (2,) where the marker should be seen with the arm at q (3,) rad."""
         return self.to_image(self.marker_place(arm, q))
 
     def marker_jacobian(self, arm, q, step=1e-5):
-        """d pixel / d q (2, 3), px/rad, of the marker with the arm at q (3,) rad: by differences."""
+        """Return d pixel / d q (2, 3), px/rad, of the marker with the arm at q (3,) rad: by differences."""
         ends = [(self.marker_pixel(arm, q + d), self.marker_pixel(arm, q - d)) for d in step * np.eye(3)]
         return np.column_stack([(forth - back) / (2 * step) for forth, back in ends])
 
     def find_marker(self, image, arm, q):
-        """Pixel (2,) of the marker on the hand, searched near where q (3,) rad puts it; None if it is not seen."""
+        """Return the pixel (2,) of the marker on the hand, sought near where q (3,) rad puts it; None if not seen."""
         expected = self.marker_pixel(arm, q)
         for one in find_balls(image, self.marker, camera=self.plane.pinhole, least_radius=4.0):
             if np.hypot(one.x - expected[0], one.y - expected[1]) < _MARKER_NEAR:
@@ -104,16 +104,16 @@ class BallLocator:
         return None
 
     def joint_errors(self, arm, q, xy, sigma_q):
-        """The potentiometers' errors according to the picture: the marker is seen at xy, though q puts it elsewhere.
+        """Return the potentiometers' errors according to the picture: the marker is seen at xy, not where q puts it.
 
             minimise |xy - project(p(q + e))|^2 / sigma_px^2 + sum (e_i / sigma_q_i)^2
 
-        One pixel is two equations for three joints; what is missing comes from sigma_q, how far each potentiometer is
-        believed to be off. The hand's distance to the camera is found no better than from them. Errors of some
+        One pixel gives two equations for three joints. What is missing comes from sigma_q, how far each potentiometer
+        is believed to be off, and so does the hand's distance from the camera. Errors of some
         hundredths of a rad move the pixel linearly, so with H = d pixel / d q and P = diag(sigma_q^2) the minimum is
         e = P H^T (H P H^T + sigma_px^2 I)^-1 (xy - project(p(q))).
         Args: arm: Arm; q: (3,) rad; xy: (2,) px; sigma_q: (3,) rad.
-        Returns: e (3,) rad. If the picture contradicts q by more than 5 sigma: VisionError.
+        Returns: e (3,) rad. Raises VisionError if the picture contradicts q by more than 5 sigma.
         """
         sigma_q = vector3("sigma_q", sigma_q)
         H, P = self.marker_jacobian(arm, q), np.diag(sigma_q**2)

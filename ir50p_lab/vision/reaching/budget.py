@@ -14,14 +14,14 @@ def error_budget(arm, locator, q, *, sigma_q, slope, sigma_ball_px=0.15, sigma_m
 
     With J = dp/dq of the tip, H = dpixel/dq of the marker, and the gain G of the camera's correction
     (`BallLocator.joint_errors`), potentiometers that are off by e leave J e after the first look and J (I - G H) e
-    after the second. Errors of the camera's calibration or place are left out: they shift ball and hand alike, so that
+    after the second. Errors in the camera's calibration or place are left out: they shift ball and hand alike, so that
     little of them remains after the second look.
 
-    Args: arm: Arm; locator: BallLocator; q: (3,) rad, pose over the ball; sigma_q: (3,) rad, standard deviation of the
+    Args: arm: Arm; locator: BallLocator; q: (3,) rad, pose above the ball; sigma_q: (3,) rad, standard deviation of the
     potentiometers' smooth errors; slope: (3,) counts/rad; sigma_ball_px, sigma_marker_px: px, of found centres; noise:
     counts rms of a reading before rounding.
     Returns: pandas.DataFrame of rms distances at the tip, m, one row for each cause, columns "one look" and "two
-    looks". The causes are independent, so squares add; the last row is "all together".
+    looks". The causes are independent, so their squares add; the last row is "all together".
     """
     import pandas as pd
 

@@ -15,11 +15,11 @@ ACCEPTED = 1.5e-3  # m at the tip, by a second of readings with the command froz
 
 
 def reaching_controller(model, period=0.01, limit_pwm=255):
-    """The controller that reaching uses: computed torque with a slow integral; without motor data the PIDs of 4.1-4.3.
+    """Return the controller for reaching: computed torque with a slow integral; without motor data the PIDs of 4.1-4.3.
 
-    Gains tried out on simulated arms: stiff (12 rad/s), so that a joint that breaks loose does not jump far, and with
-    two periods of delay compensated; those of Tables 4.5-4.7 (5, 3, 7 rad/s) leave centimetres at the tip.
-    model: Arm, or what `identify` returns; None: the PIDs. limit_pwm: what the lab allows, a number or (3,).
+    Its gains were tried out on simulated arms. It is stiff (12 rad/s), so that a joint that breaks loose does not jump
+    far, and compensates two periods of delay; the gains of Tables 4.5-4.7 (5, 3, 7 rad/s) leave centimetres at the tip.
+    model: Arm, or what `identify` returns; None: the PIDs. limit_pwm: what the lab allows, a number or (3,). period: s.
     """
     from ir50p_lab.controllers import PID, ComputedTorque
 
@@ -31,16 +31,16 @@ def reaching_controller(model, period=0.01, limit_pwm=255):
 class Mover:
     """The arm on an open bench as one run: `with Mover(bench) as mover: mover.move_to(p)`.
 
-    The drive goes on from the first command to the end of the `with` block, where the arm moves to its rest pose:
+    The drive stays on from the first command to the end of the `with` block, where the arm moves to its rest pose:
     between two runs a board would cut it, and the arm would sink.
 
     Args:
-        bench: an open bench. controller: default `reaching_controller(arm)`; on a real arm the PIDs, for a
+        bench: an open bench. controller: default `reaching_controller(arm)`; on a real arm the PIDs, because a
         model of it must be measured first.
-        rest: go to the rest pose at the end.
+        rest: whether to go to the rest pose at the end.
 
-    Attributes: q: (3,) rad, best estimate of its set point; errors: (3,) rad, what the potentiometers are off by here:
-    they show q - errors.
+    Attributes: q: (3,) rad, best estimate of where the set point is; errors: (3,) rad, by how much the potentiometers
+    are off here: they show q - errors.
     """
 
     def __init__(self, bench, *, controller=None, rest=True):
@@ -90,7 +90,7 @@ class Mover:
     # ---- motions
 
     def hold(self, seconds):
-        """Stay for a while. Returns the mean of the measured angles, (3,) rad as the potentiometers show them."""
+        """Stay for `seconds`. Returns the mean of the measured angles, (3,) rad as the potentiometers show them."""
         rows = (self._set, np.zeros(3), np.zeros(3))
         shown, u = np.zeros(3), np.zeros(3)
         cycles = max(1, round(seconds / self.bench.period))
@@ -126,9 +126,9 @@ class Mover:
         """Stand at the joint angles `goal` (3,) rad: averaged readings show the error, and the set point is corrected.
 
         A joint that sticks waits until the integral has built up; moving the set point by the error shortens that. Once
-        there, the command is frozen: friction holds the arm, nothing oscillates, and a second of readings is averaged,
-        which has a tenth of the noise and rounding of a single one.
-        Returns: the measured angles (3,) rad, averaged, corrected.
+        the arm is there, the command is frozen: friction holds the arm, nothing oscillates, and a second of readings is
+        averaged, which has a tenth of the noise and rounding of a single one.
+        Returns: the measured angles (3,) rad, averaged and corrected.
         """
         wanted = goal - self.errors
         self._set, self._frozen = wanted.copy(), None
@@ -165,6 +165,6 @@ class Mover:
         return float(np.linalg.norm(forward_kinematics(self.arm, q + dq) - forward_kinematics(self.arm, q)))
 
     def grip(self, closed=True, seconds=0.6):
-        """Close or open the gripper, and wait."""
+        """Close or open the gripper, and wait for `seconds`."""
         self._gripper = bool(closed)
         self.hold(seconds)

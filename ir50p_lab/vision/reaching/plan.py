@@ -18,10 +18,10 @@ _PEAK = 1.875  # a quintic's largest speed over its mean
 
 
 def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
-    """Joint angles (3,) rad that put the tip on p (3,) m, of those within the limits (less 0.03 rad) nearest to `near`.
+    """Return joint angles (3,) rad that put the tip on p (3,) m: of those within the limits, the nearest to `near`.
 
-    Raises UnreachableError if p is outside the workspace (with .distance m and .nearest (3,) m), if every pose is past
-    a joint limit, or if tip or elbow would be under the table.
+    The angles keep 0.03 rad from the limits. Raises UnreachableError if p is outside the workspace (with .distance m
+    and .nearest (3,) m), if every pose is past a joint limit, or if tip or elbow would be under the table.
     """
     p = vector3("p", p, unit="m")
     if p[2] < 0:
@@ -38,14 +38,14 @@ def reach_pose(arm, p, near=(0.0, 0.0, 0.0)):
 
 
 def plan(arm, q, p, *, lift=LIFT, speed=0.5):
-    """The path of the tip from the pose q to the point p: over it, then down. Where that comes too low it rises first.
+    """Plan the path of the tip from the pose q to the point p: first above it, then down. If too low, it rises first.
 
     All pieces are straight lines in joint angles; on the last the tip of the IR50P stays within 4 mm of a plumb line.
 
-    Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m; lift: m above p where the last piece begins; 0 goes there
-    directly; speed: rad/s, > 0, of the fastest joint. Joint 2 of the IR50P follows 0.5 rad/s against gravity.
+    Args: arm: Arm; q: (3,) rad, where it stands; p: (3,) m; lift: m above p where the last piece begins (with 0 it goes
+    there directly); speed: rad/s, > 0, of the fastest joint. Joint 2 of the IR50P follows 0.5 rad/s against gravity.
     Returns: Quintic, a Reference through its `points`. Raises InputError on a bad speed, UnreachableError as
-    `reach_pose`.
+    `reach_pose` does.
     """
     speed = number("speed", speed, "> 0", unit="rad/s")
     goal = reach_pose(arm, p, q)

@@ -28,13 +28,13 @@ class Reacher(Mover):
         with connect() as bench, Reacher(bench, locator) as reacher:
             found = reacher.reach()
 
-    The drive goes on from the first command to the end of the `with` block, where the arm moves to its rest pose:
+    The drive stays on from the first command to the end of the `with` block, where the arm moves to its rest pose:
     between two runs a board would cut it, and the arm would sink onto the ball. While a real camera takes its picture
-    and the picture is worked on, the loop goes on in this thread and the camera works in another.
+    and the picture is processed, the loop goes on in this thread and the camera works in another.
 
     Args:
         bench: an open bench. locator: BallLocator; one of rendered pictures raises CameraError for a real arm.
-        controller: default `reaching_controller(arm)`. rest: go to the rest pose at the end.
+        controller: default `reaching_controller(arm)`. rest: whether to go to the rest pose at the end.
 
     The potentiometers' standard deviation is taken as 0.7 counts if the bench's calibration was measured (a
     characteristic is not quite the straight line that is fitted), and as 2.5 if it is a nominal one.
@@ -81,7 +81,7 @@ class Reacher(Mover):
     # ---- tasks
 
     def reach(self, *, height=HEIGHT, looks=2):
-        """Put the tip over the ball, `height` m above its centre; look again from there and correct.
+        """Put the tip above the ball, `height` m above its centre; look again from there and correct.
 
         looks: 1: one look, then potentiometers alone; 2: after arriving the camera sees where ball and hand really
         are, and the hand is moved by the difference.
@@ -144,8 +144,9 @@ class Reacher(Mover):
     def pick(self):
         """Reach, go down, close the gripper about the ball's middle, go up again.
 
-        That the arm reaches down there is tested before anything moves.
-        Returns: Reached, of the reach. Raises as `reach`. Only another look tells whether the ball came along.
+        Whether the arm reaches down there is tested before anything moves.
+        Returns: the Reached of the reach. Raises the same as `reach`. Only another look tells whether the ball came
+        along.
         """
         reach_pose(self.arm, self._sure(self.look()).position)
         self.grip(False, 0.1)
@@ -156,7 +157,7 @@ class Reacher(Mover):
         return found
 
     def put(self, place):
-        """Carry what the gripper holds to `place` (2,) m on the table, open, go up.
+        """Carry what the gripper holds to `place` (2,) m on the table, open the gripper, go up.
 
         Raises InputError for a bad place, UnreachableError before anything moves.
         """
@@ -168,13 +169,14 @@ class Reacher(Mover):
         self.move_to(up, lift=0.0)
 
     def follow_ball(self, seconds, *, height=0.10, every=0.1, lead=None, progress=False):
-        """Keep the tip over a moving ball: look every `every` s, filter position and velocity, aim ahead.
+        """Keep the tip above a moving ball: look every `every` s, filter position and velocity, aim ahead.
 
-        First a planned trajectory to where the ball is seen, clear of the table; `seconds` count from there.
-        lead: s that the aim lies ahead: the delay of camera and arm together. More puts the tip ahead of the ball, less
-        behind it, by the difference times its speed. Default 0.04 s, for the arm, with rendered pictures, which show
-        this moment; 0.1 s more with any other camera (assumed of a webcam: if you have measured yours, give the sum).
-        Where the ball cannot be followed (out of reach, or not seen for 0.5 s) the arm waits at the last place.
+        The arm first moves on a planned trajectory, clear of the table, to where the ball is seen; `seconds` count from
+        there. lead: how far ahead it aims, s: the delay of camera and arm together. A larger lead puts the tip ahead of
+        the ball, a smaller one behind it, by the difference times the ball's speed. Default: 0.04 s, for the arm, with
+        rendered pictures, which show this moment; 0.1 s more with any other camera (assumed of a webcam: if you have
+        measured yours, give the sum). height: of the tip above the ball's centre, m.
+        If the ball cannot be followed (out of reach, or not seen for 0.5 s), the arm waits at the last place.
         progress: whether a bar is shown. Returns: FollowLog.
         """
         from tqdm.auto import tqdm
@@ -220,9 +222,9 @@ class Reacher(Mover):
 
 
 def reach(bench, locator, *, height=HEIGHT, looks=2, **options):
-    """One reach on an open bench, and back to rest: `Reacher` in one call.
+    """Reach once on an open bench, and go back to rest: `Reacher` in one call.
 
-    bench, locator, options: as of `Reacher`; height m, looks: as of its `reach`, like what it returns and raises.
+    bench, locator, options: as of `Reacher`; height m, looks: as of its `reach`, and so is what it returns and raises.
     """
     with Reacher(bench, locator, **options) as reacher:
         return reacher.reach(height=height, looks=looks)

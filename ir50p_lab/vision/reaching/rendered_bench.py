@@ -1,4 +1,4 @@
-"""The simulated bench with a table, balls and a rendered camera that sees them: for trying out what a webcam does."""
+"""The simulated bench with a table, balls and a rendered camera that sees them, to try out what a webcam does."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ class RenderedBench(Camera):
 
     `read()` gives a Frame of this moment. Time is that of the simulation, `t` s: it counts the periods in which the
     bench was driven. `balls_true`, and the camera in `scene` (that of the bench without balls), are the truth, for
-    tests and for drawings that say so. The fingers hold a ball when they close with the tip within 12 mm of its centre.
+    tests and for drawings that say so. The fingers hold a ball if they close with the tip within 12 mm of its centre.
     """
 
     name, simulated = "rendered camera over the simulated arm", True
@@ -66,7 +66,7 @@ class RenderedBench(Camera):
 
     @property
     def balls_true(self):
-        """Centres of the balls now, (n, 3) m."""
+        """The centres of the balls now, (n, 3) m."""
         if self._rolling is not None:
             return np.atleast_2d(np.asarray(self._rolling(self.t), dtype=float))
         balls = self._lying.copy()
@@ -76,11 +76,11 @@ class RenderedBench(Camera):
         return balls
 
     def lay(self, place):
-        """Somebody lays the first ball at `place` (3,) m."""
+        """Lay the first ball at `place` (3,) m, as somebody's hand would."""
         self._lying[0] = place
 
     def read(self):
-        """A picture of this moment: Frame."""
+        """Return a picture of this moment as a Frame."""
         arm, q = self.bench.arm, self.bench.plant.q_true
         balls = [SceneBall(position=tuple(p), radius=_RADIUS) for p in self.balls_true]
         place = tuple(transform_points(frames(arm, q)[3], np.array(MARKER_AT)))
@@ -97,12 +97,12 @@ class RenderedBench(Camera):
 
 
 def camera_over(bench, balls=(0.40, 0.0, 0.03), *, small=False):
-    """The camera for a bench: rendered over a simulated arm, else a webcam; one line says which.
+    """Return the camera for a bench: rendered over a simulated arm, else a webcam; one line says which.
 
     The webcam is what IR50P_CAMERA says, else number 0: a loop needs one that gives pictures while a cell runs.
     balls: where balls lie in a rendered picture (a real camera sees yours); small: pictures of half the width and
-    height, for what must be quick.
-    Raises CameraError for a real arm if there is no webcam: it would reach for a ball that was only drawn.
+    height, where speed matters.
+    Raises CameraError for a real arm if there is no webcam, because the arm would reach for a ball that was only drawn.
     """
     from ir50p_lab.vision.camera import open_camera
 

@@ -16,10 +16,10 @@ def camera_at(K, corners, points):
 
 
 def practise(bench, seed):
-    way = views.PracticeWay(bench, seed)
+    path = views.PracticePath(bench, seed)
     gentle = my_robot.PID(kp=(350, 500, 400), ki=(150, 300, 250), kd=(40, 60, 40))
     for sample in bench.run(58):
-        bench.drive(gentle.step(sample.t, sample.q, way(sample.t)))
+        bench.drive(gentle.step(sample.t, sample.q, path(sample.t)))
     return bench.recording
 
 

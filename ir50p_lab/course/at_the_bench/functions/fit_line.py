@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def fit_line(x, y):
-    """Slope, offset and the covariance (2, 2) of both, of the line nearest to points x, y (n,) by least squares."""
+    """Return slope, offset and the covariance (2, 2) of both, of the least-squares line through points x, y (n,)."""
     n = len(x)
     A = np.column_stack([x, np.ones(n)])
     N = A.T @ A

@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def low_pass(x, cutoff_hz, rate_hz):
-    """The signal x (n,) after a low pass of first order that knows the past only, begun at x[0]; (n,)."""
+    """Return the signal x (n,) after a first-order low pass that knows only the past and begins at x[0]; (n,)."""
     share = 1 - np.exp(-2 * np.pi * cutoff_hz / rate_hz)
     y = np.zeros(len(x))
     y[0] = x[0]

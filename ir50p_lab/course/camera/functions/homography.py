@@ -7,7 +7,7 @@ from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def homography(pixels, table):
-    """H (3, 3), last entry 1: w (X, Y, 1) = H (u, v, 1) takes undistorted pixels (4, 2) to places (4, 2) m."""
+    """Return H (3, 3), last entry 1: w (X, Y, 1) = H (u, v, 1) takes undistorted pixels (4, 2) to places (4, 2) m."""
     A = np.zeros((8, 8))
     b = np.zeros(8)
     for k in range(4):

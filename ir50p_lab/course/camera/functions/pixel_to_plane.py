@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def pixel_to_plane(K, T_base_cam, pixel, height):
-    """The place (3,) m, `height` m above the table, that an undistorted pixel (2,) shows    (4.5.3 corrected)."""
+    """Return the place (3,) m that an undistorted pixel (2,) shows, `height` m above the table    (4.5.3 corrected)."""
     direction = T_base_cam[:3, :3] @ np.linalg.solve(K, np.array([pixel[0], pixel[1], 1.0]))
     lens = T_base_cam[:3, 3]
     return lens + (height - lens[2]) / direction[2] * direction

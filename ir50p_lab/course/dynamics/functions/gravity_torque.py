@@ -8,7 +8,7 @@ from ir50p_lab.course.kinematics.functions.jacobian import jacobian
 
 
 def gravity_torque(q, l, m, lc, g):
-    """Torques (3,) N m that hold the arm at rest in the pose q    (1.111)-(1.114)."""
+    """Return the torques (3,) N m that hold the arm at rest in the pose q    (1.111)-(1.114)."""
     T = frames(q, l)
     along = [T[0][:3, 2], T[2][:3, 0], T[3][:3, 0]]
     torque = np.zeros(3)

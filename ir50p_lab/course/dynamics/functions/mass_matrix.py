@@ -8,7 +8,7 @@ from ir50p_lab.course.kinematics.functions.jacobian import jacobian
 
 
 def mass_matrix(q, l, m, lc, inertia, rotor):
-    """Inertia of the arm as its joints feel it, (3, 3) kg m^2    (1.90 corrected)."""
+    """Return the inertia of the arm as its joints feel it, (3, 3) kg m^2    (1.90 corrected)."""
     T = frames(q, l)
     along = [T[0][:3, 2], T[2][:3, 0], T[3][:3, 0]]
     M = np.diag(rotor)

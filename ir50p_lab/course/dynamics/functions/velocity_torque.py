@@ -7,7 +7,7 @@ from ir50p_lab.modelling import IR50P, mass_matrix
 
 
 def velocity_torque(q, qd, mass):
-    """Torques (3,) N m that keep all joints at a steady speed, without weight    (1.78)-(1.81 corrected)."""
+    """Return the torques (3,) N m that keep all joints at a steady speed, without weight    (1.78)-(1.81 corrected)."""
     small = 1e-5
     change = np.zeros((3, 3))
     pull = np.zeros(3)

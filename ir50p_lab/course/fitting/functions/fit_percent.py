@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import task_of
 
 
 def fit_percent(measured, predicted):
-    """100 where predicted (n,) is what was measured (n,), 0 where it is no better than the mean; below 0 is worse."""
+    """Return 100 if predicted (n,) is what was measured (n,), 0 if it is no better than the mean; below 0 is worse."""
     missed = np.sum((measured - predicted) ** 2)
     spread = np.sum((measured - np.mean(measured)) ** 2)
     return 100 * (1 - np.sqrt(missed / spread))

@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import task_of
 
 
 def least_squares(A, y):
-    """The theta (p,) with which A (n, p) theta is nearest to y (n,), and its standard errors (p,)    (2.34)."""
+    """Return the theta (p,) with which A (n, p) theta is nearest to y (n,), and its standard errors (p,)    (2.34)."""
     N = A.T @ A
     theta = np.linalg.solve(N, A.T @ y)
     rest = y - A @ theta

@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import task_of, text_of
 
 
 def body_columns(q, qd, qdd):
-    """What accelerations and speeds ask for, (3, 20), zeros in the other columns (2.51 corrected)."""
+    """Return what accelerations and speeds ask for, (3, 20), with zeros in the other columns (2.51 corrected)."""
     c2, s2, c3, s3 = np.cos(q[1]), np.sin(q[1]), np.cos(q[2]), np.sin(q[2])
     c23, s23, (a, b, c), (A, B, C) = np.cos(q[1] + q[2]), np.sin(q[1] + q[2]), qd, qdd
     both, swing, Y = s23 * c2 + c23 * s2, B + C + s23 * c23 * a**2, np.zeros((3, 20))
@@ -20,7 +20,7 @@ def body_columns(q, qd, qdd):
 
 
 def regressor(q, qd, qdd, direction):
-    """The table Y (3, 20) with which Y times the 20 numbers of each joint, added up, are the pushes (2.50, 2.51)."""
+    """Return the table Y (3, 20): Y times the 20 numbers of each joint, added up, are the pushes (2.50, 2.51)."""
     Y = body_columns(q, qd, qdd)
     level, forearm = np.cos(q[1]), np.cos(q[1] + q[2])
     Y[1, 2] = 9.81 * level

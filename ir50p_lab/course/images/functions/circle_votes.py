@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def circle_votes(points, inwards, radius, shape):
-    """Votes (h, w) of points (n, 2), (x, y) px, with unit vectors inwards (n, 2), `radius` px away    (3.3)."""
+    """Return the votes (h, w) of points (n, 2), (x, y) px, `radius` px along unit vectors inwards (n, 2)    (3.3)."""
     votes = np.zeros(shape, dtype=int)
     for point, direction in zip(points, inwards, strict=True):
         column, row = np.round(point + radius * direction).astype(int)

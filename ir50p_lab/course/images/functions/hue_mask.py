@@ -6,19 +6,19 @@ from ir50p_lab.course.checking.task import sentences, task_of, text_of
 
 
 def hue_of(rgb):
-    """The hue (...,), rad, of colours (..., 3): an angle on the ring, 0 at red."""
+    """Return the hue (...,), rad, of colours (..., 3): an angle on the ring, 0 at red."""
     r, g, b = np.moveaxis(np.asarray(rgb, dtype=float), -1, 0)
     return np.arctan2(np.sqrt(3) * (g - b), 2 * r - g - b)
 
 
 def saturation_of(rgb):
-    """How far colours (..., 3) are from grey (...,): 0 to 1; black counts as grey."""
+    """Return how far colours (..., 3) are from grey (...,): 0 to 1; black counts as grey."""
     most, least = np.max(rgb, axis=-1).astype(float), np.min(rgb, axis=-1)
     return (most - least) / np.maximum(most, 1e-9)
 
 
 def hue_mask(rgb, hue, tolerance):
-    """True (h, w) where the hue is within tolerance of `hue`, rad, and the pixel is not a grey    (3.1.3), (3.1)."""
+    """Return True (h, w) where the hue is within tolerance of `hue`, rad, and the pixel no grey    (3.1.3), (3.1)."""
     rgb = np.asarray(rgb, dtype=float)
     r, g, b = np.moveaxis(rgb, -1, 0)
     most = rgb.max(axis=-1)

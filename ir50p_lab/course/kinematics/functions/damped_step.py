@@ -10,7 +10,7 @@ from ir50p_lab.course.kinematics.functions.jacobian import jacobian
 
 
 def damped_step(q, p, l, damping):
-    """One step of damped least squares towards p, the next q (3,)    (1.56)-(1.59 corrected)."""
+    """Return the next q (3,) after one step of damped least squares towards p    (1.56)-(1.59 corrected)."""
     T = frames(q, l)
     tip = T[3][:3, 3]
     J = jacobian(T, 3, tip)[:3]

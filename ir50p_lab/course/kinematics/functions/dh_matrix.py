@@ -7,21 +7,21 @@ from ir50p_lab.course.kinematics.functions.rot_z import rot_z
 
 
 def shift(x, y, z):
-    """Shift as a transform (4, 4)."""
+    """Return a shift as a transform (4, 4)."""
     T = np.eye(4)
     T[:3, 3] = [x, y, z]
     return T
 
 
 def turn_z(angle):
-    """Turn about z as a transform (4, 4)."""
+    """Return a turn about z as a transform (4, 4)."""
     T = np.eye(4)
     T[:3, :3] = rot_z(angle)
     return T
 
 
 def turn_x(angle):
-    """Turn about x as a transform (4, 4)."""
+    """Return a turn about x as a transform (4, 4)."""
     c = np.cos(angle)
     s = np.sin(angle)
     T = np.eye(4)
@@ -30,7 +30,7 @@ def turn_x(angle):
 
 
 def dh_matrix(theta, d, a, alpha):
-    """One joint and its link, (4, 4)    (1.29)."""
+    """Return the transform of one joint and its link, (4, 4)    (1.29)."""
     joint = turn_z(theta) @ shift(0, 0, d)
     link = shift(a, 0, 0) @ turn_x(alpha)
     return joint @ link

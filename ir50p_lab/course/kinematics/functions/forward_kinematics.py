@@ -6,7 +6,7 @@ from ir50p_lab.course.kinematics.functions.frames import frames
 
 
 def forward_kinematics(q, l):
-    """Place of the tip, (3,) m    (1.31 corrected)."""
+    """Return the place of the tip, (3,) m    (1.31 corrected)."""
     T = frames(q, l)
     tip = T[3]
     return tip[:3, 3]

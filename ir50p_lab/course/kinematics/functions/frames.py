@@ -8,7 +8,7 @@ from ir50p_lab.course.kinematics.functions.dh_matrix import dh_matrix
 
 
 def frames(q, l):
-    """Transforms of frames 0 to 3 as seen from the base, (4, 4, 4)    (1.14)-(1.19)."""
+    """Return the transforms of frames 0 to 3 as seen from the base, (4, 4, 4)    (1.14)-(1.19)."""
     A1 = dh_matrix(q[0], l[0], 0, np.pi / 2)
     A2 = dh_matrix(q[1], 0, l[1], 0)
     A3 = dh_matrix(q[2], 0, l[2], -np.pi / 2)

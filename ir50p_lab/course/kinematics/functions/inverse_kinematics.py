@@ -12,7 +12,7 @@ SAME = 1e-5  # rad: near the stretched arm rounding of the place leaves the elbo
 
 
 def inverse_kinematics(p, l):
-    """All poses that put the tip on p, (n, 3); n = 0 out of reach    (1.60)-(1.73 corrected)."""
+    """Return all poses that put the tip on p, (n, 3); n = 0 if p is out of reach    (1.60)-(1.73 corrected)."""
     x, y, z = p
     l1, l2, l3 = l
     height = z - l1
@@ -49,7 +49,7 @@ def _targets():
 
 
 def as_poses(value):
-    """Poses as rows (n, 3); an empty answer of any shape is (0, 3)."""
+    """Return poses as rows (n, 3); an empty answer of any shape becomes (0, 3)."""
     rows = np.asarray(value, dtype=float)
     if rows.size == 0:
         return np.empty((0, 3))
@@ -59,7 +59,7 @@ def as_poses(value):
 
 
 def same_poses(returned, expected):
-    """Tell whether two lists hold the same poses, in any order; on the edge, where two coincide, one will do."""
+    """Return True if two lists hold the same poses, in any order; at the edge, where two coincide, one is enough."""
     a, b = as_poses(returned), as_poses(expected)
     if len(a) == 0 or len(b) == 0:
         return len(a) == len(b)

@@ -8,7 +8,7 @@ from ir50p_lab.course.kinematics.functions.frames import frames
 
 
 def jacobian(T, link, point):
-    """Velocity and turning of a point carried by a link, per joint speed, (6, 3)    (1.32)-(1.43 corrected)."""
+    """Return velocity and turning of a point on a link, per joint speed, (6, 3)    (1.32)-(1.43 corrected)."""
     J = np.zeros((6, 3))
     for joint in range(link):
         axis = T[joint][:3, 2]

@@ -1,4 +1,4 @@
-"""reach: of all poses that reach a place the allowed one that is nearest."""
+"""reach: of all poses that reach a place, the nearest one that is allowed."""
 
 from itertools import product
 
@@ -12,7 +12,7 @@ from ir50p_lab.course.kinematics.functions.inverse_kinematics import SAME, inver
 
 
 def reach(p, l, q_now, limits):
-    """The allowed pose that puts the tip on p with the smallest largest turn from q_now, (3,) or None."""
+    """Return the allowed pose that puts the tip on p with the smallest largest turn from q_now, (3,), or None."""
     best = None
     smallest = np.inf
     for pose in inverse_kinematics(p, l):
@@ -27,17 +27,17 @@ def reach(p, l, q_now, limits):
 
 
 def within(q, limits):
-    """Tell whether every joint keeps its limits."""
+    """Return True if every joint keeps its limits."""
     return bool((q >= limits[0]).all() and (q <= limits[1]).all())
 
 
 def above_table(q, l):
-    """Tell whether elbow and tip (frames 2 and 3) are not below the table."""
+    """Return True if neither elbow nor tip (frames 2 and 3) is below the table."""
     return bool((frames(q, l)[2:, 2, 3] >= -1e-9).all())
 
 
 def allowed(q, l, limits):
-    """Tell whether a pose keeps the limits and stays above the table."""
+    """Return True if a pose keeps the limits and stays above the table."""
     return within(q, limits) and above_table(q, l)
 
 

@@ -7,7 +7,7 @@ from ir50p_lab.course.checking.task import task_of
 
 # fmt: off
 def rot_z(angle):
-    """Turn about z by an angle (rad), (3, 3)    (1.4)."""
+    """Return the turn about z by an angle (rad), (3, 3)    (1.4)."""
     c = np.cos(angle)
     s = np.sin(angle)
     return np.array([

@@ -10,7 +10,7 @@ from ir50p_lab.course.loops.functions.PID_trials import LOANS, tried
 
 
 class PID(controllers.PID):
-    """The course's PID with the arguments of the student's    (2.1)-(2.4)."""
+    """The course's PID, with the arguments of the student's    (2.1)-(2.4)."""
 
     def __init__(self, kp, ki=0.0, kd=0.0, limit_pwm=255, period=0.01, filter_hz=10, **options):
         super().__init__(kp, ki=ki, kd=kd, limit_pwm=limit_pwm, period=period, filter_hz=filter_hz, **options)

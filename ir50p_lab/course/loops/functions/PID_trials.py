@@ -1,7 +1,7 @@
-"""What a student's PID is put through: runs that show one part of it each, and what a wrong one is told.
+"""What a student's PID is put through: runs that each show one part of it, and what is said of a wrong one.
 
-Where a right answer can be told from its commands alone, a table says what else they are: of a mistake, or of another
-right answer ("also right" in PID.STAGE.txt). What the other trials say stands in PID.txt, each sentence with its key.
+If a right answer can be recognised by its commands alone, a table says what other commands mean: a mistake, or another
+right answer ("also right" in PID.STAGE.txt). What the other trials say is in PID.txt, each sentence with its key.
 """
 
 import inspect
@@ -95,7 +95,7 @@ def _made(stage, heading):
 
 
 def compared(stage, commands, otherwise, heading="mistakes"):
-    """A probe: the commands have to be those of a right one; heading: of the table of mistakes."""
+    """Return a probe: the commands have to be those of a right PID. heading: of the table of mistakes."""
 
     def probe(cls):
         u = commands(cls)
@@ -133,7 +133,7 @@ def _push_symptom(cls, u, expected):
 
 
 def gains(*names):
-    """A probe: these gains are kept in `self` and read in every step."""
+    """Return a probe: these gains have to be kept in `self` and read in every step."""
 
     def probe(cls):
         for name in names:
@@ -157,7 +157,7 @@ def _shared(cls):
 
 
 def again(forgotten, **settings):
-    """A probe: a run after a reset is the first one again."""
+    """Return a probe: a run after a reset has to be the same as the first one."""
 
     def probe(cls):
         pid = _make(cls, kp=10.0, period=_PERIOD, **settings)
@@ -278,6 +278,6 @@ PROBES = {
 
 
 def tried(stage, cls):
-    """Try a class by all probes of a stage in order; returns what they remark. Raises Failed."""
+    """Try a class with all probes of a stage in order; return what they remark. Raises Failed."""
     remarks = filter(None, [probe(cls) for probe in PROBES[stage]])
     return " ".join(dict.fromkeys(remarks))  # each once

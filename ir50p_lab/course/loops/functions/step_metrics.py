@@ -8,13 +8,13 @@ _NAMES = ("rise time", "overshoot", "settling time", "rest error")
 
 
 def step_metrics(t, q, target):
-    """Rise time (s), overshoot (rad), settling time (s) and rest error (rad) of one joint's step: four numbers.
+    """Return rise time (s), overshoot (rad), settling time (s) and rest error (rad) of one joint's step: four numbers.
 
-    Rise from 10 to 90 % of the way from q[0] to the target, nan if it never gets there; overshoot beyond the target,
-    0 if there is none; settling: when the joint comes to stay within max(2 % of the way, 4 sigma) of the target, nan
-    if it is outside at the end; rest error: target minus the mean of the last second. sigma is the noise, from what
-    neighbouring samples of the last second differ by, std(diff)/sqrt(2): a slow swing does not widen its own band. With
-    3 sigma one sample in 370 is outside and is taken for the end of the step.
+    Rise time: from 10 to 90 % of the step from q[0] to the target, nan if it never gets there. Overshoot: beyond the
+    target, 0 if there is none. Settling time: when the joint comes to stay within max(2 % of the step, 4 sigma) of the
+    target, nan if it is outside at the end. Rest error: target minus the mean of the last second. sigma is the noise,
+    from the differences of neighbouring samples in the last second, std(diff)/sqrt(2): so a slow swing does not widen
+    its own band. With 3 sigma one sample in 370 would be outside and be taken for the end of the step.
     """
     way = target - q[0]
     last_second = q[t >= t[-1] - 1 - 1e-9]

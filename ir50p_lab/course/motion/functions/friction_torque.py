@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def friction_torque(qd, fv, fc, fs, qs, offset):
-    """Friction as it stands on the left of (1.74), (3,) N m    (1.115)-(1.117), the offset from (1.118)."""
+    """Return friction as it stands on the left of (1.74), (3,) N m    (1.115)-(1.117), the offset from (1.118)."""
     fading = np.exp(-((qd / qs) ** 2))
     dry = fc + (fs - fc) * fading
     return fv * qd + np.sign(qd) * dry + offset

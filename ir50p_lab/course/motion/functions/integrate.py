@@ -8,7 +8,7 @@ from ir50p_lab.course.motion.functions.rk4_step import rk4_step
 
 
 def integrate(f, x0, duration, dt):
-    """The times t (n + 1,) from 0 to duration (s) in steps of dt, and x (n + 1, len(x0)) at each of them."""
+    """Return the times t (n + 1,) from 0 to duration (s) in steps of dt, and x (n + 1, len(x0)) at each of them."""
     steps = round(duration / dt)
     t = dt * np.arange(steps + 1)
     x = np.zeros((steps + 1, len(x0)))

@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import sentences, task_of
 
 
 def motor_torque(u_pwm, qd, gain, damping):
-    """Torque of the motors at the joints, (3,) N m    (1.118)-(1.120 corrected, without the rotor)."""
+    """Return the torque of the motors at the joints, (3,) N m    (1.118)-(1.120 corrected, without the rotor)."""
     push = gain * u_pwm
     brake = damping * qd
     return push - brake

@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import task_of
 
 
 def quintic(q0, q1, duration, t):
-    """Angle, speed and acceleration at time t (s) of a motion from q0 to q1 (rad); at rest outside [0, duration]."""
+    """Return angle, speed and acceleration at t (s) of a motion from q0 to q1 (rad); at rest outside [0, duration]."""
     s = np.clip(np.asarray(t, dtype=float) / duration, 0, 1)
     way = q1 - q0
     q = q0 + way * (10 * s**3 - 15 * s**4 + 6 * s**5)

@@ -7,7 +7,7 @@ from ir50p_lab.course.motion.functions import rates
 
 
 def rk4_step(f, t, x, dt):
-    """x after one step of dt (s), from x at the time t, where f(t, x) is its rate."""
+    """Return x after one step of dt (s), from x at the time t, where f(t, x) is its rate."""
     k1 = f(t, x)
     k2 = f(t + dt / 2, x + dt / 2 * k1)
     k3 = f(t + dt / 2, x + dt / 2 * k2)

@@ -1,6 +1,6 @@
 """find_and_reach: from a picture to the pose above the ball in it, composed of earlier functions.
 
-It is tried on drawn pictures, each of which shows one part of it; what is said then stands in find_and_reach.txt.
+It is tried on drawn pictures, each of which shows one part of it; what is said then is in find_and_reach.txt.
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ _SAYS = sentences("find_and_reach", __file__)
 
 
 def find_and_reach(rgb, q_now, *, K, T_base_cam, l, limits, hue, tolerance, radii, ball_radius, above):
-    """The pose (3,) rad with the tip `above` m over the ball in a straightened picture, or None."""
+    """Return the pose (3,) rad with the tip `above` m over the ball in a straightened picture, or None."""
     mask = hue_mask(rgb, hue, tolerance)
     edges = edges_of(mask)
     best = 0.5

@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import task_of
 
 
 def adaptive_step(theta, Y, s, gain, dt):
-    """theta (3, 20) after dt (s): a number falls where Y (3, 20) and the s (3,) of its row agree in sign."""
+    """Return theta (3, 20) after dt (s): a number falls if Y (3, 20) and the s (3,) of its row agree in sign."""
     change = np.zeros((3, 20))
     for joint in range(3):
         change[joint] = gain[joint] * Y[joint] * s[joint]

@@ -6,7 +6,7 @@ from ir50p_lab.course.checking.task import task_of
 
 
 def computed_torque(q, qd, reference, model, kp, kd):
-    """The push (3,) with which q, qd follow the rows q, qd, qdd of the reference; model(q, qd, qdd) gives it (2.19)."""
+    """Return the push (3,) with which q, qd follow the reference's rows q, qd, qdd, by model(q, qd, qdd) (2.19)."""
     q_planned, qd_planned, qdd_planned = reference
     wanted = qdd_planned + kd * (qd_planned - qd) + kp * (q_planned - q)
     return model(q, qd, wanted)
