@@ -68,7 +68,7 @@ class Installer:
         self.run([*self._install, *arguments])
 
     def run(self, command):
-        """Run a command to its end, showing seconds and last line on a terminal; return the output. Raises SetUpError."""
+        """Run a command, showing its seconds and last line on a terminal; return its output. Raises SetUpError."""
         output = ""
         with (
             clock() as last,
