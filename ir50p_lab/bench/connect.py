@@ -1,4 +1,4 @@
-"""`connect()`: the board if one answers, else the simulated arm. One line says which, why, and how to get the other."""
+"""`connect()`: the board if one answers, else the simulated arm. It says which, why, and how to get the other."""
 
 import os
 
@@ -13,7 +13,7 @@ _TO_SIMULATED = f"for the simulated arm: connect('simulated') or {VARIABLE}=simu
 
 
 def connect(port=None, *, arm=None, calibration=None, period=0.01, record_to=None, **simulated):
-    """Find the bench, open it, and say in one line which it is, why, and how to get the other.
+    """Find the bench, open it, and say which it is, why, and how to get the other.
 
     The first of these that says something decides: the argument `port`, the environment variable IR50P_BENCH, a board
     that is plugged in (known by its USB id) and answers, and finally the simulated arm.
@@ -79,6 +79,6 @@ def _board(device, common, reason):
 
 
 def _say(bench, reason, other):
-    """The one line, padded to wipe out what was announced before it."""
-    print(f"Bench: {bench.name} ({reason}; calibration: {bench.calibration.source}; {other})".ljust(80))
+    """The sentence, padded to wipe out what was announced before it; JupyterLab would break one line within a word."""
+    print(f"Bench: {bench.name} ({reason}; calibration: {bench.calibration.source};".ljust(80), f"  {other})", sep="\n")
     return bench

@@ -1,4 +1,4 @@
-"""Which bench `connect()` opens, in which order, and the one line it says."""
+"""Which bench `connect()` opens, in which order, and the sentence that it says."""
 
 from importlib import import_module
 
@@ -69,12 +69,12 @@ def board(**faults):
 
 @pytest.fixture
 def said(capsys):
-    """The one line, without what was wiped out before it."""
+    """The sentence, in one line, without what was wiped out before it."""
 
     def read():
         out = capsys.readouterr().out
-        assert out.count("\n") == 1 and out.endswith("\n")
-        return out.rstrip("\n").split("\r")[-1].rstrip()
+        assert out.count("\n") == 2 and out.endswith("\n")
+        return " ".join(out.split("\r")[-1].split())
 
     return read
 
