@@ -372,7 +372,8 @@ class TestContract:
         exec(EXPERIMENT, lesson)
         recording = lesson["bench"].recording
         assert len(recording) == 3000
-        assert capsys.readouterr().out.count("\n") == 1
+        said = capsys.readouterr().out
+        assert said.count("\n") == 2 and "Bench: " in said  # one sentence in two lines, and nothing more
         assert np.abs(lesson["applied_pwm"]).max() <= 255
         if rig.moves:
             np.testing.assert_allclose(recording.q[-500:].mean(axis=0), [1.57, 1.57, -1.05], atol=0.1)
