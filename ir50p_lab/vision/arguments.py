@@ -27,7 +27,7 @@ def point_list(name, value, n, unit="px"):
 def rigid(name, T):
     """Return `T` as a (4, 4) float array. Raises InputError unless it is a rotation and a translation."""
     T = numbers(name, T, unit="m and a rotation")
-    good = T.shape == (4, 4) and np.isfinite(T).all() and np.array_equal(T[3], [0, 0, 0, 1])
+    good = T.shape == (4, 4) and np.isfinite(T).all() and np.allclose(T[3], [0, 0, 0, 1], rtol=0, atol=1e-9)
     if not good or np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max() > 1e-6 or np.linalg.det(T[:3, :3]) < 0:
         raise InputError(
             f"{name} is not a rigid transform: give (4, 4) with a rotation, a translation in m and 0 0 0 1 below (for "

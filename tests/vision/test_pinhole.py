@@ -7,6 +7,7 @@ from refusals import refused
 
 from ir50p_lab.errors import CalibrationError, ImageError
 from ir50p_lab.vision import Pinhole
+from ir50p_lab.vision.arguments import rigid
 from ir50p_lab.vision.rendering import look_at, pose
 
 LENSES = [(), (-0.25, 0.09), (-0.12, 0.08, 0.001, -0.0006), (0.1, -0.2, -0.001, 0.002, 0.05), (-0.3, 0.1, 0, 0, -0.01)]
@@ -110,3 +111,11 @@ def test_refusals(make, words):
 def test_frozen():
     with pytest.raises(ValueError, match="read-only"):
         Pinhole(K).K[0, 0] = 1
+
+
+def test_a_transform_that_was_computed_is_rigid():
+    T = look_at((0.9, -0.1, 0.6), (0.4, 0.05, 0.0))
+    T[3] += [1e-17, -2e-16, 0, 2e-16]  # as an inverse rounds on some processors
+    assert rigid("T_base_cam", T) is not None
+    bent = T + np.diag([0, 0, 0, 1e-3])
+    refused("not a rigid transform", rigid, "T_base_cam", bent)
