@@ -8,12 +8,11 @@ uses too, and `calibrateCamera` on the same pictures. Ratios, not times, are wha
 `findChessboardCorners` with `cornerSubPix`, takes a tenth of the time on these pictures.)
 """
 
-import time
-
 import cv2
 import numpy as np
 import pytest
 from board_pictures import look, paint, project
+from processor_time import processor_time
 
 from ir50p_lab.vision import Checkerboard, calibrate, find_balls, render_scene
 from ir50p_lab.vision.rendering import bench_scene
@@ -32,17 +31,6 @@ def recipe(image):
     mask = cv2.morphologyEx(cv2.morphologyEx(mask, cv2.MORPH_OPEN, KERNEL), cv2.MORPH_CLOSE, KERNEL)
     outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     return cv2.minEnclosingCircle(max(outlines, key=cv2.contourArea))
-
-
-def fastest(*functions, rounds=60):
-    """Shortest processor time of each function, s, taken in turns."""
-    best = [np.inf] * len(functions)
-    for _ in range(rounds):
-        for k, function in enumerate(functions):
-            start = time.process_time()
-            function()
-            best[k] = min(best[k], time.process_time() - start)
-    return best
 
 
 @pytest.fixture(autouse=True)
@@ -84,7 +72,9 @@ def test_calibration_beside_plain_calls(request):
     assert abs(found.fx - 700) < 3 * found.stderr["fx"] and abs(plain_calibration(pictures) - 700) < 10
     if not request.config.getoption("benchmark_enable"):
         return  # both do the work: the plain test run is not for times
-    ours, plain = fastest(lambda: calibrate(pictures, progress=False), lambda: plain_calibration(pictures), rounds=3)
+    ours, plain = processor_time(
+        lambda: calibrate(pictures, progress=False), lambda: plain_calibration(pictures), rounds=3
+    )
     print(
         f"\ncalibrate {1e3 * ours:.0f} ms, OpenCV alone {1e3 * plain:.0f} ms: {ours / plain:.2f} times "
         f"(target {TARGET_CALIBRATION})"
@@ -99,7 +89,7 @@ def test_ball_beside_the_plain_recipe(request):
     assert np.hypot(balls[0].x - truth.balls[0].x, balls[0].y - truth.balls[0].y) < 0.5
     if not request.config.getoption("benchmark_enable"):
         return
-    ours, plain = fastest(lambda: find_balls(image), lambda: recipe(image))
+    ours, plain = processor_time(lambda: find_balls(image), lambda: recipe(image), rounds=60)
     print(
         f"\nfind_balls {1e3 * ours:.2f} ms ({1 / ours:.0f} a second), OpenCV alone {1e3 * plain:.2f} ms: "
         f"{ours / plain:.2f} times (target {TARGET})"

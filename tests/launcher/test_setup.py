@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from ir50p_lab.launcher.environment import Environment
+from ir50p_lab.launcher.environment import _FIRST_RUN, Environment
 from ir50p_lab.launcher.file_lock import take_lock
 from ir50p_lab.launcher.problems import SetUpError
 
@@ -26,6 +26,12 @@ def test_first_setup_says_what_it_does_and_makes_the_package_importable_anywhere
 def test_the_imports_of_the_check_compile_what_is_used(made):
     assert made.variables()["PYTHONDONTWRITEBYTECODE"] == "1"  # as container images set it
     assert list(made.venv.glob("[Ll]ib/**/__pycache__/pebble.*.pyc"))
+
+
+def test_a_wrong_setting_does_not_stop_the_setup():
+    """What is wrong is told where it is used."""
+    wrong = {"IR50P_UNIT": "seven", "IR50P_SEED": "-", "IR50P_ARM": "nowhere.toml"}
+    subprocess.run([sys.executable, "-c", _FIRST_RUN], env=os.environ | wrong, check=True)
 
 
 def test_second_setup_does_nothing(made):

@@ -2,13 +2,13 @@
 
 import subprocess
 import sys
-import time
 from functools import partial
 
 import cv2
 import numpy as np
 import pytest
 from board_pictures import look, paint
+from processor_time import processor_time
 
 from ir50p_lab.errors import CalibrationError
 from ir50p_lab.vision import calibrate, find_balls, render_scene
@@ -50,17 +50,6 @@ def test_pictures_without_a_board_are_given_up_about_as_soon_as_by_opencv_alone(
 
     by_us, alone = processor_time(ours, lambda: [cv2.findChessboardCorners(one, (9, 6)) for one in pictures], rounds=2)
     assert by_us < 4 * alone
-
-
-def processor_time(*calls, rounds):
-    """Shortest time of each call, taken in turns, s."""
-    took = np.full(len(calls), np.inf)
-    for _ in range(rounds):
-        for k, call in enumerate(calls):
-            start = time.process_time()
-            call()
-            took[k] = min(took[k], time.process_time() - start)
-    return took
 
 
 def test_the_first_ball_is_found_at_once():

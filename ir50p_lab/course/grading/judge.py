@@ -45,7 +45,7 @@ def judged(hand_in_of, arms=3, *, seeds=None, seconds=SECONDS):
         folder = _moved_in(path, Path(room))
         words = [*shut_in, "--ro-bind", room, room] if (shut_in := sandbox.bubblewrap()) else []
         races = pool.map(partial(_race, folder, words, seconds), seeds)
-        found = lent(path.read_text(encoding="utf-8", errors="replace"))
+        found = lent(path.read_text(encoding="utf-8", errors="replace"), folder)
         return RaceDay(tuple(tqdm(races, total=len(seeds), desc="arms")), found)
 
 

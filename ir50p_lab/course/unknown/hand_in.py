@@ -10,6 +10,8 @@ import numpy as np
 from ir50p_lab import home
 from ir50p_lab.course.checking.cell import cell_text, globals_of
 from ir50p_lab.course.checking.judge_text import is_open
+from ir50p_lab.course.robot.catalogue import ORDER
+from ir50p_lab.course.unknown import robot
 from ir50p_lab.errors import InputError
 
 NAME = "unknown_arm"
@@ -41,9 +43,17 @@ def text_of_hand_in(function):
     return "\n\n".join(sorted(found.values(), key=lambda text: not text.startswith(("import", "from")))) + "\n"
 
 
-def lent(text):
-    """Return the names of the notebook's functions that are the course's in a hand-in, as its imports say."""
-    return tuple(sorted(re.findall(r"^from ir50p_lab\.course\.unknown\.notebook_functions import (\w+)", text, re.M)))
+def lent(text, folder):
+    """Return the names of the functions in a race that are the course's, sorted: tuple of str.
+
+    text: the hand-in, whose imports name those of the notebook. folder: where its `my_robot` lies; what the hand-in or
+    the given code calls of it, and what is not there or on loan, is the course's.
+    """
+    given = re.findall(r"^from ir50p_lab\.course\.unknown\.notebook_functions import (\w+)", text, re.M)
+    called = set(re.findall(r"\bmy_robot\.(\w+)", text + inspect.getsource(robot))) & set(ORDER)
+    files = {name: folder / "my_robot" / f"_{name}.py" for name in called}
+    theirs = {name for name, file in files.items() if file.is_file() and not file.read_bytes().startswith(b"# on loan")}
+    return tuple(sorted({*given, *called} - theirs))
 
 
 def _written(name, value):

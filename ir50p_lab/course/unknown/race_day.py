@@ -35,7 +35,7 @@ class Raced:
 
 @dataclass(frozen=True)
 class RaceDay:
-    """races: a tuple of Raced, one of each arm; lent: names of the functions in the hand-in that are the course's."""
+    """races: a tuple of Raced, one of each arm; lent: names of the functions in it that are the course's."""
 
     races: tuple
     lent: tuple = ()

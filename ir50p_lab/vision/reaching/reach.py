@@ -192,31 +192,30 @@ class Reacher(Mover):
         tracker, log, point = BallTracker(), [], SetPoint(self._set, speed=0.6)
         begin = next_look = last_seen = self._last.t
         job = self._frozen = None
-        bar = tqdm(total=seconds, unit="s", desc="following", leave=False, disable=not progress)
-        while self._last.t - begin < seconds:
-            t = self._last.t
-            bar.update(t - begin - bar.n)
-            if job is None and t >= next_look:
-                next_look = t + every
-                taken, job = t, self._look()
-            if job is not None and job.done():
-                seen, job = job.result(), None
-                if seen:
-                    tracker.update(taken, seen.position[:2])
-                    last_seen = t
-            if t - last_seen > _LOST:
-                tracker = BallTracker()
-            if tracker.position is not None:
-                aim = np.array([*tracker.at(t + lead), self.locator.radius + height])
-                with contextlib.suppress(ValueError):  # UnreachableError: wait
-                    point.move_to(reach_pose(self.arm, aim, self.q) - self.errors)
-            rows = point(t)
-            self._set = rows[0]
-            self._cycle(rows)
-            t = self._last.t  # of the readings that this cycle has brought
-            tip = forward_kinematics(self.arm, self._last.q + self.errors)
-            log.append((t - begin, tip, tracker.at(t), tracker.velocity))
-        bar.close()
+        with tqdm(total=seconds, unit="s", desc="following", leave=False, disable=not progress) as bar:
+            while self._last.t - begin < seconds:
+                t = self._last.t
+                bar.update(t - begin - bar.n)
+                if job is None and t >= next_look:
+                    next_look = t + every
+                    taken, job = t, self._look()
+                if job is not None and job.done():
+                    seen, job = job.result(), None
+                    if seen:
+                        tracker.update(taken, seen.position[:2])
+                        last_seen = t
+                if t - last_seen > _LOST:
+                    tracker = BallTracker()
+                if tracker.position is not None:
+                    aim = np.array([*tracker.at(t + lead), self.locator.radius + height])
+                    with contextlib.suppress(ValueError):  # UnreachableError: wait
+                        point.move_to(reach_pose(self.arm, aim, self.q) - self.errors)
+                rows = point(t)
+                self._set = rows[0]
+                self._cycle(rows)
+                t = self._last.t  # of the readings that this cycle has brought
+                tip = forward_kinematics(self.arm, self._last.q + self.errors)
+                log.append((t - begin, tip, tracker.at(t), tracker.velocity))
         self.hold(0.3)
         return FollowLog(*(np.array(column) for column in zip(*log, strict=True)), lead=lead)
 

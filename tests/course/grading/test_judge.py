@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import solutions
 from cells import cell
 
 from ir50p_lab.course import my_robot
@@ -85,8 +86,15 @@ def test_what_the_course_lent_is_told(tmp_path):
     file = tmp_path / "unknown_arm.py"
     file.write_text(text_of_hand_in(notebook(text, "unknown_arm", both_ways=both_ways)))
     day = judged(file, seeds=[1])
-    assert "0 of 3 balls" in str(day) and "the course's in it: both_ways\n" in str(day)
-    assert lent(REFERENCE.read_text()) == ()
+    assert "0 of 3 balls" in str(day) and "the course's in it: both_ways, circle_votes, " in str(day)
+
+
+def test_what_my_robot_lacks_or_has_on_loan_is_the_courses(tmp_path):
+    (tmp_path / "my_robot").mkdir()
+    for name, text in ("quintic", ""), ("reach", "# on loan from the course: the next you write takes its place\n"):
+        (tmp_path / "my_robot" / f"_{name}.py").write_text(text + solutions.source(name))
+    found = lent("def unknown_arm(bench):\n    my_robot.quintic(my_robot.fit_percent, my_robot.whose)\n", tmp_path)
+    assert {"reach", "fit_percent", "hue_mask"} <= set(found) and not {"quintic", "whose", "rot_z"} & set(found)
 
 
 def test_what_cannot_be_handed_in_is_told():
