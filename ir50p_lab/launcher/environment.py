@@ -24,7 +24,7 @@ TEST_LOCK = "environment-test.txt"
 
 _FIRST_RUN = """import os
 for name in [name for name in os.environ if name.startswith("IR50P_")]:
-    del os.environ[name]  # a setting that is wrong is told where it is used
+    os.environ.pop(name)  # a setting that is wrong is told where it is used
 import ir50p_lab
 try:
     from ir50p_lab import bench, controllers, modelling, signals, simulation
