@@ -1,5 +1,5 @@
-"""Code lines beside their budgets, of each folder of the package, of all of it and of the tests:
-``python tests/code_lines.py``. Over budget, it fails.
+"""Code lines beside the design's budgets, of each folder of the package, of all of it and of the tests:
+``python tests/code_lines.py``. It fails above the budget, or where there was more already, above what there was.
 
 A code line has code on it: blank lines, comments and docstrings do not count. JavaScript counts, what was built from it
 does not.
@@ -16,22 +16,34 @@ BUILT = {"live_arm.js"}  # bundles
 NOT_OURS = {"node_modules", "__pycache__"}
 ROOT = Path(__file__).parents[1]
 PACKAGE, TESTS = ROOT / "ir50p_lab", ROOT / "tests"
-BUDGETS = {  # what there is; the design asks for less in bench, course, launcher, root and tests
-    "modelling": 1150,
-    "signals": 333,
-    "controllers": 284,
-    "simulation": 456,
+FOLDERS = {  # their budgets are the design's; nobody raises one
+    "modelling": 1290,
+    "signals": 380,
+    "controllers": 309,
+    "simulation": 460,
+    "bench": 2220,
+    "identification": 1440,
+    "vision": 2080,
+    "course": 7650,  # without the next two
+    "course/publishing": 590,
+    "course/grading": 540,
+    "launcher": 530,
+    "root": 230,
+}
+BUDGETS = FOLDERS | {"all": 17_719, "tests": 20_000, "sentences": 2_800}
+#: What was over its budget on 29 November 2026. A figure here only falls: set it to what is left after each cut.
+STILL = {
     "bench": 2384,
     "identification": 1486,
     "vision": 2282,
-    "course": 9158,  # without the next two
+    "course": 9158,
     "course/publishing": 698,
     "course/grading": 566,
     "launcher": 615,
     "root": 359,
+    "all": 19_771,
+    "tests": 20_402,
 }
-BUDGET_OF_ALL, BUDGET_OF_TESTS, BUDGET_OF_SENTENCES = 19_771, 20_402, 2_000
-LINES_A_TEXT = 75  # a function more than the twenty that BUDGET_OF_SENTENCES is for
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
@@ -63,52 +75,51 @@ def javascript_lines(source):
 
 def folder_lines(package=PACKAGE):
     """{folder: code lines}; files beside the folders are `root`."""
-    found = dict.fromkeys(BUDGETS, 0) if package == PACKAGE else {}
+    found = dict.fromkeys(FOLDERS, 0) if package == PACKAGE else {}
     for path in sorted(package.rglob("*")):
         parts = path.relative_to(package).parts
         count = {".py": python_lines, ".js": javascript_lines}.get(path.suffix)
         if count and path.name not in BUILT and not NOT_OURS & set(parts):
             folder = parts[0] if len(parts) > 1 else "root"
-            folder = inner if (inner := "/".join(parts[:2])) in BUDGETS else folder
+            folder = inner if (inner := "/".join(parts[:2])) in FOLDERS else folder
             found[folder] = found.get(folder, 0) + count(path.read_text("utf-8"))
     return found
 
 
 def sentences():
-    """Lines of the texts that `check` speaks from, beside the functions that students write, and how many they may have."""
-    texts = list(PACKAGE.glob("course/*/functions/*.txt"))
-    more = sum("." not in path.stem for path in texts) - 20  # a stage of a class is no function
-    lines = sum(len(path.read_text("utf-8").splitlines()) for path in texts)
-    return lines, BUDGET_OF_SENTENCES + max(more, 0) * LINES_A_TEXT
+    """Lines of the texts that `check` speaks from, beside the functions that students write."""
+    texts = PACKAGE.glob("course/*/functions/*.txt")
+    return sum(len(path.read_text("utf-8").splitlines()) for path in texts)
 
 
-def rows(product, tests):
-    """(what, code lines, budget) of each folder, of all of the product and of all tests."""
-    yield from (
-        (folder, lines, BUDGETS.get(folder, 0)) for folder, lines in product.items()
-    )  # a new folder has no budget
-    yield "all", sum(product.values()), BUDGET_OF_ALL
-    yield "tests", sum(tests.values()), BUDGET_OF_TESTS
-    yield "sentences", *sentences()
+def count_all():
+    """{row of the table: its lines}."""
+    product = folder_lines()
+    more = {"all": sum(product.values()), "tests": sum(folder_lines(TESTS).values()), "sentences": sentences()}
+    return product | more
 
 
-def too_large(product, tests):
-    """A sentence for each row that has more lines than it may."""
-    for what, lines, budget in rows(product, tests):
-        if lines > budget:
-            yield f"{what}: {lines} code lines, {lines - budget} more than the {budget} it may have: leave some out"
+def too_large(lines):
+    """A sentence for each row that has more lines than it may; a new folder has no budget."""
+    for what, count in lines.items():
+        most = max(STILL.get(what, 0), BUDGETS.get(what, 0))
+        if count > most:
+            yield f"{what}: {count} lines, {count - most} more than the {most} it may have: leave some out"
 
 
 def main():
-    """Print the table; return 1 if a row is too large, else 0."""
-    found = folder_lines(), folder_lines(TESTS)
-    print(f"{'folder':<16}{'lines':>7}{'budget':>8}{'over':>7}")
-    for what, lines, budget in rows(*found):
-        print(f"{what:<16}{lines:>7}{budget:>8}{max(lines - budget, 0) or '':>7}")
-    too_many = list(too_large(*found))
-    for sentence in too_many:
+    """Print the table; return 1 if a row has more lines than it may, else 0."""
+    lines = count_all()
+    print(f"{'folder':<18}{'lines':>7}{'budget':>8}{'over':>7}{'at most':>9}")
+    for what, count in lines.items():
+        budget = BUDGETS.get(what, 0)
+        print(f"{what:<18}{count:>7}{budget:>8}{max(count - budget, 0) or '':>7}{STILL.get(what, budget):>9}")
+    over = lines["all"] - BUDGETS["all"]
+    if over > 0:
+        print(f"The package is {over} lines, {over / BUDGETS['all']:.1%}, over the design's budget.")
+    for sentence in too_large(lines):
         print(sentence, file=sys.stderr)
-    return 1 if too_many else 0
+    return 1 if any(too_large(lines)) else 0
 
 
 if __name__ == "__main__":

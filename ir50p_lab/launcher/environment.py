@@ -22,10 +22,7 @@ from ir50p_lab.launcher.problems import COMMAND
 LOCK = "environment.txt"
 TEST_LOCK = "environment-test.txt"
 
-_FIRST_RUN = """import os
-for name in [name for name in os.environ if name.startswith("IR50P_")]:
-    os.environ.pop(name)  # a setting that is wrong is told where it is used
-import ir50p_lab
+_FIRST_RUN = """import ir50p_lab
 try:
     from ir50p_lab import bench, controllers, modelling, signals, simulation
     pid = controllers.PID(kp=1, limit_pwm=255)

@@ -47,7 +47,9 @@ class Installer:
         self._install = [*self._python, "pip", "install", "--disable-pip-version-check", "--no-color", "-vv"]
         self._install += ["--target="]  # not the folder that a pip.conf may name
         own = {"PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1", "PIP_USER": "0"}
-        self._variables = environment.variables() | own
+        variables = environment.variables() | own
+        # Without the course's own settings: one that is wrong is told where it is used.
+        self._variables = {name: value for name, value in variables.items() if not name.startswith("IR50P_")}
         # It inherits the lock: after a 'kill -9' of the launcher the next set-up waits until it has ended.
         self._pass_fds = () if os.name == "nt" else (lock.fileno(),)
 

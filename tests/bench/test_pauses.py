@@ -141,6 +141,7 @@ def test_a_period_longer_than_the_watchdog_allows_is_refused(rig):
         next(bench.run(1))
 
 
+@pytest.mark.timing
 def test_with_cold_caches_all_is_compiled_before_the_clock_starts(tmp_path):
     """A run whose functions were never compiled on this machine misses nothing: the arm's drive is not cut."""
     program = """

@@ -98,7 +98,11 @@ def running_lab(home, app="jupyterlab", **variables):
         yield f"{address}/{'lab/tree' if app == 'jupyterlab' else 'notebooks'}/{{}}?token={token}", server
     finally:
         server.terminate()
-        server.wait(60)
+        try:
+            server.wait(60)
+        except subprocess.TimeoutExpired:  # a busy machine: it waits for its kernels
+            server.kill()
+            server.wait()
 
 
 def _wait_for(address, server, log):

@@ -8,9 +8,11 @@ import subprocess
 import sys
 
 import pytest
+from mini_project import PROJECT
 
 from ir50p_lab.launcher.environment import _FIRST_RUN, Environment
 from ir50p_lab.launcher.file_lock import take_lock
+from ir50p_lab.launcher.installer import Installer
 from ir50p_lab.launcher.problems import SetUpError
 
 IMPORT_BOTH = "import pebble, ir50p_lab; print(ir50p_lab.__file__)"
@@ -28,10 +30,14 @@ def test_the_imports_of_the_check_compile_what_is_used(made):
     assert list(made.venv.glob("[Ll]ib/**/__pycache__/pebble.*.pyc"))
 
 
-def test_a_wrong_setting_does_not_stop_the_setup():
+def test_a_wrong_setting_does_not_stop_the_setup(tmp_path, monkeypatch):
     """What is wrong is told where it is used."""
-    wrong = {"IR50P_UNIT": "seven", "IR50P_SEED": "-", "IR50P_ARM": "nowhere.toml"}
-    subprocess.run([sys.executable, "-c", _FIRST_RUN], env=os.environ | wrong, check=True)
+    for name, wrong in {"IR50P_UNIT": "seven", "IR50P_SEED": "-", "IR50P_ARM": "nowhere.toml"}.items():
+        monkeypatch.setenv(name, wrong)
+    environment = Environment(PROJECT)
+    environment.log = tmp_path / "log"
+    with open(tmp_path / "lock", "w") as lock:
+        Installer(environment, lock).run([sys.executable, "-P", "-c", _FIRST_RUN])  # raises SetUpError
 
 
 def test_second_setup_does_nothing(made):

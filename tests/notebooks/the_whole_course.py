@@ -1,7 +1,7 @@
 """One student goes from 00 to 19 in one home: every function is their own, and what is kept is what the next loads.
 Another one takes the fourteen sessions of the guide, and nothing else.
 
-CI runs one of the two a commit, by its name: all notebooks one after the other take ten minutes.
+CI runs one of the two on half of the commits, by its name: all notebooks one after the other take ten minutes.
 """
 
 import pytest

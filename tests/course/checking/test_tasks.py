@@ -141,6 +141,7 @@ def test_whole_numbers_are_no_mistake_where_the_right_ones_are_whole():
     assert "whole numbers" not in grade(task, lambda n: np.array([n + 3, n + 4, 4, n * 7])).says
 
 
+@pytest.mark.timing
 def test_an_answer_that_nothing_explains_waits_a_second_at_most():
     text = "def reach(p, l, q_now, limits):\n    return np.sin(p) + np.cos(q_now) ** {}"
     check("reach", cell(text.format(2), "reach"))  # what is made once and kept is made here
@@ -163,6 +164,7 @@ def test_all_files_of_a_function_are_written_or_none(capsys):
     assert my_robot.whose("rot_z") == "yours"
 
 
+@pytest.mark.timing
 def test_a_file_is_looked_at_once_in_a_tenth_of_a_second(monkeypatch, capsys):
     check("rot_z", cell(ROT_Z, "rot_z"))
     looks = []

@@ -9,6 +9,7 @@ from cells import cell
 
 from ir50p_lab.course import my_robot
 from ir50p_lab.course.grading.judge import judged
+from ir50p_lab.course.robot.catalogue import ORDER
 from ir50p_lab.course.unknown import both_ways
 from ir50p_lab.course.unknown.hand_in import lent, text_of_hand_in
 from ir50p_lab.errors import InputError
@@ -95,6 +96,13 @@ def test_what_my_robot_lacks_or_has_on_loan_is_the_courses(tmp_path):
         (tmp_path / "my_robot" / f"_{name}.py").write_text(text + solutions.source(name))
     found = lent("def unknown_arm(bench):\n    my_robot.quintic(my_robot.fit_percent, my_robot.whose)\n", tmp_path)
     assert {"reach", "fit_percent", "hue_mask"} <= set(found) and not {"quintic", "whose", "rot_z"} & set(found)
+
+
+def test_nothing_is_lent_to_who_wrote_it_all(tmp_path):
+    (tmp_path / "my_robot").mkdir()
+    for name in ORDER:
+        (tmp_path / "my_robot" / f"_{name}.py").write_text(solutions.source(name))
+    assert lent(REFERENCE.read_text(encoding="utf-8"), tmp_path) == ()
 
 
 def test_what_cannot_be_handed_in_is_told():
