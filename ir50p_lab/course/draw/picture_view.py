@@ -1,19 +1,17 @@
 """A picture to look at and to click."""
 
 import base64
-import contextlib
 import html
-import io
 
 import ipywidgets as widgets
 import numpy as np
+import traitlets
 from PIL import Image, ImageDraw
 
 from ir50p_lab.course.draw.canvas import Canvas
 from ir50p_lab.course.draw.painter import DRAWING, encode_png
 from ir50p_lab.course.draw.pictures import STAMP
-from ir50p_lab.course.draw.style import alarm
-from ir50p_lab.course.draw.widgets import explain
+from ir50p_lab.course.draw.widgets import hear
 from ir50p_lab.errors import InputError
 
 
@@ -30,23 +28,21 @@ class PictureView(widgets.VBox):
     Raises InputError for what is not a picture.
     """
 
+    picture = traitlets.TraitType()
+    circles = traitlets.List()
+
     def __init__(self, picture, on_click=None, alt="A picture", source=STAMP, circles=()):
-        self._on_click, self._circles = on_click, list(circles)
+        self._on_click = on_click
         self.canvas = Canvas(description=alt)
         self.status = widgets.HTML(html.escape(source), layout={"min_height": "1.5em"})
         super().__init__([self.canvas, self.status])
-        self.picture = picture
+        self.picture, self.circles = picture, list(circles)
         if on_click is not None:
             self.canvas.on_click(self._clicked)
 
-    @property
-    def picture(self):
-        """The picture that is shown; set it to show another."""
-        return self._picture
-
-    @picture.setter
-    def picture(self, picture):
-        picture = np.asarray(picture)
+    @traitlets.validate("picture")
+    def _bytes(self, proposal):
+        picture = np.asarray(proposal["value"])
         if picture.shape[2:] == () and picture.dtype == bool:
             picture = np.repeat(255 * picture[..., None].astype(np.uint8), 3, axis=2)
         if picture.ndim != 3 or picture.shape[2] != 3 or picture.dtype != np.uint8 or picture.size == 0:
@@ -54,41 +50,24 @@ class PictureView(widgets.VBox):
                 f"the picture holds {picture.dtype} numbers of shape {picture.shape}: give bytes (h, w, 3), red green "
                 "blue, or a mask (h, w) of True and False"
             )
-        self._picture = picture
-        self._show()
+        return picture
 
-    @property
-    def circles(self):
-        """The circles that are drawn over the picture: (x, y, radius, colour) each, px."""
-        return self._circles
-
-    @circles.setter
-    def circles(self, circles):
-        self._circles = list(circles)
-        self._show()
-
-    def _show(self):
-        shown = Image.fromarray(self._picture)
+    @traitlets.observe("picture", "circles")
+    def _show(self, _):
+        shown = Image.fromarray(self.picture)
         pen = ImageDraw.Draw(shown)
-        for x, y, radius, colour in self._circles:
+        for x, y, radius, colour in self.circles:
             pen.ellipse((x - radius, y - radius, x + radius, y + radius), outline=colour, width=3)
-        width = f"{self._picture.shape[1]}px"
+        width = f"{self.picture.shape[1]}px"
         self.canvas.layout = {"width": width, "max_width": "100%", "border": "1px solid #999999"}
         self.canvas.value = encode_png(np.asarray(shown))
 
     def _clicked(self, right, up):
         """Hand the pixel under the click on; `right` and `up` are fractions of the picture."""
-        h, w = self._picture.shape[:2]
+        h, w = self.picture.shape[:2]
         x, y = min(int(right * w), w - 1), min(int((1 - up) * h), h - 1)
-        said, wrong = io.StringIO(), ""
-        with DRAWING, contextlib.redirect_stdout(said):
-            try:
-                words = self._on_click(max(x, 0), max(y, 0))
-                if isinstance(words, str):
-                    print(words)
-            except Exception as error:
-                wrong = alarm(explain(error))
-        self.status.value = html.escape(said.getvalue().rstrip()).replace("\n", "<br>") + wrong
+        with DRAWING:
+            self.status.value, _ = hear(lambda: self._on_click(max(x, 0), max(y, 0)))
 
     def _repr_mimebundle_(self, **kwargs):
         """The widget, and the picture of this moment for viewers without widgets (an exported page)."""

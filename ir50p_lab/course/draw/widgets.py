@@ -131,24 +131,14 @@ class LivePanel(widgets.VBox):
                     self._busy = False
 
     def _draw(self):
-        self.drawn, self.error, said = self.values, None, io.StringIO()
-        with contextlib.redirect_stdout(said), warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", UnstableLoopWarning)
-            try:
-                words = self._update(**self.drawn)
-                self._show()
-                words = words() if callable(words) else words
-                if isinstance(words, str):
-                    print(words)
-            except Exception as error:
-                self.error = error
-        for text in dict.fromkeys(str(warning.message) for warning in caught):
-            print(text, file=said)
-        text = html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
-        if self.error is not None:
-            text += alarm(explain(self.error))
-        self.status.value = text
+        self.drawn = self.values
+        self.status.value, self.error = hear(self._update_and_show)
         self.updates += 1
+
+    def _update_and_show(self):
+        words = self._update(**self.drawn)
+        self._show()
+        return words() if callable(words) else words
 
     def _show(self):
         if self._painter is None:
@@ -177,6 +167,23 @@ class LivePanel(widgets.VBox):
             if old._run[0] and old._run[0] == self._run[0] and old._run != self._run:
                 LivePanel.panels.discard(old)
                 close_all(old)
+
+
+def hear(do):
+    """Return as HTML what `do()` prints, returns as a text, warns of and stops with; and its error or None."""
+    said, stopped = io.StringIO(), None
+    with contextlib.redirect_stdout(said), warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UnstableLoopWarning)
+        try:
+            words = do()
+            if isinstance(words, str):
+                print(words)
+        except Exception as error:
+            stopped = error
+    for text in dict.fromkeys(str(warning.message) for warning in caught):
+        print(text, file=said)
+    text = html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
+    return text + (alarm(explain(stopped)) if stopped else ""), stopped
 
 
 def explain(error):
