@@ -34,10 +34,7 @@ def __getattr__(name):
 
 def whose(name):
     """Return whose function is used: "yours", "on loan" or "the course's"."""
-    stage = at_work(name)
-    if not student_package.is_there(stage):
-        return "the course's"
-    return "on loan" if student_package.on_loan(stage) else "yours"
+    return student_package.whose(at_work(name))
 
 
 def done():
@@ -56,12 +53,8 @@ def _say(name):
     """Say once in a session, and again when it changes, whose function is in use."""
     if (name, whose(name)) not in _said:
         _said.add((name, whose(name)))
-        words = {
-            "yours": "yours",
-            "on loan": "on loan from the course",
-            "the course's": "the course's, until you write yours",
-        }
-        print(f"my_robot.{name}: {words[whose(name)]}")
+        more = {"on loan": " from the course", "the course's": ", until you write yours"}
+        print(f"my_robot.{name}: {whose(name)}{more.get(whose(name), '')}")
 
 
 def __dir__():

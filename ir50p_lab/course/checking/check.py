@@ -60,11 +60,7 @@ def reset(name):
 
 
 def _keep(source, wanted, remark):
-    whole = (
-        "." in wanted.name
-        and student_package.is_there(wanted.function)
-        and not student_package.on_loan(wanted.function)
-    )
+    whole = "." in wanted.name and student_package.whose(wanted.function) == "yours"
     try:
         lent = student_package.keep(source, wanted, task)
         record(wanted.name)
@@ -103,9 +99,7 @@ def _wrong(source, wanted, result):
     except lab_book.LabBookError as error:
         says += f" (This try was not counted: {error}.)"
     more = [("one input that fails", result.example)] if result.example else []
-    if tries >= _BEFORE_LOAN and not (
-        student_package.is_there(wanted.name) or student_package.is_there(wanted.function)
-    ):
+    if tries >= _BEFORE_LOAN and not any(map(student_package.is_there, (wanted.name, wanted.function))):
         student_package.lend(wanted, task)
         says += (
             f" The course lends you its {wanted.name}, so that you can go on; it is marked as a loan in your report."

@@ -43,9 +43,11 @@ def is_there(name):
     return first.partition(_STAGE)[2].split(":")[0] == (name if "." in name else "")
 
 
-def on_loan(name):
-    """Return True if a function in the folder is the course's."""
-    return is_there(name) and read(path_of(name)).startswith(_LOAN)
+def whose(name):
+    """Return whose a function is, or this stage of one: "yours", "on loan" or, if it is not there, "the course's"."""
+    if not is_there(name):
+        return "the course's"
+    return "on loan" if read(path_of(name)).startswith(_LOAN) else "yours"
 
 
 def keep(source, task, find, *, loan=""):
