@@ -8,9 +8,9 @@ import re
 
 import circles
 import pytest
+from a_student_keeps_all import run
 from a_student_measures import code_cells, opened
 from a_student_tunes import PLUG_IN, ROOT
-from test_a_student import run
 from test_live_arm_in_lab import VIEW, show
 
 NOTEBOOK = ROOT / "notebooks" / "11_bench_drive.ipynb"

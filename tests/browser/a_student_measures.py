@@ -10,9 +10,9 @@ from contextlib import contextmanager
 import nbformat
 import pytest
 import solutions
+from a_student_keeps_all import run
 from a_student_tunes import PLUG_IN, ROOT
 from conftest import running_lab
-from test_a_student import run
 from test_live_arm_in_lab import KERNEL_IDLE
 
 NOTEBOOK = ROOT / "notebooks" / "10_bench_measure.ipynb"

@@ -11,8 +11,8 @@ from pathlib import Path
 import nbformat
 import pytest
 import solutions
+from a_student_keeps_all import go_to, run
 from conftest import running_lab
-from test_a_student import go_to, run
 from test_live_arm_in_lab import KERNEL_IDLE
 
 ROOT = Path(__file__).parents[2]

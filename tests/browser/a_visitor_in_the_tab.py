@@ -20,7 +20,7 @@ from pathlib import Path
 import pytest
 import solutions
 import yaml
-from test_a_student import RUN, run
+from a_student_keeps_all import RUN, run
 from test_live_arm_in_lab import KERNEL_IDLE
 
 ROOT = Path(__file__).parents[2]

@@ -3,9 +3,9 @@
 import platform
 
 import nbformat
+from a_student_keeps_all import NOTEBOOKS
 from conftest import running_lab
 from stripped import read
-from test_a_student import NOTEBOOKS
 
 OPENED = "[...jupyterapp.shell.widgets('main')].find(widget => widget.context?.path === 'page.ipynb')"
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from a_student_keeps_all import run
 from conftest import running_lab
-from test_a_student import run
 from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL, VIEW, show
 
 THE_VIEW = VIEW.format(0)
