@@ -13,23 +13,11 @@ def law(v="qdd + kd * (rate - qd) + kp * (place - q)", u="model(q, qd, v)", read
 ROWS = "theta = theta.copy()\n    for j in range(3):\n        theta[j] -= dt * gain[j] * Y[j] * s[j]\n    return theta"
 WRONG = [  # function, its body, what is said
     ("computed_torque", law("qdd - kd * (rate - qd) - kp * (place - q)"), "both errors have the wrong sign"),
-    ("computed_torque", law("kd * (rate - qd) + kp * (place - q)"), "the plan's own is missing"),
-    ("computed_torque", law("qdd - kd * qd - kp * (q - place)"), "counts the whole speed"),
-    ("computed_torque", law("qdd - kd * (q - place) - kp * (qd - rate)"), "changed places"),
-    ("computed_torque", law("qdd", "model(q, qd, v) + kd * (rate - qd) + kp * (place - q)"), "outside the model"),
-    ("computed_torque", law(u="model(place, rate, v)"), "given the planned ones"),
-    ("computed_torque", law(u="v"), "never asked"),
     ("computed_torque", law(u="model(q, qd, 0.01 * v)"), ""),
     ("computed_torque", law("qdd + kd @ (rate - qd) + kp @ (place - q)"), ""),
     ("computed_torque", "e = reference[0]\n    e -= q\n    return model(q, qd, reference[2] + kp * e)", ""),
-    ("adaptive_step", "return theta + dt * gain * Y * s.reshape(3, 1)", "away from what is right"),
     ("adaptive_step", "return theta - dt * gain * (Y.T @ s)", "the s of its own joint"),
-    ("adaptive_step", "return theta - gain * Y * s[:, None]", "dt is missing"),
-    ("adaptive_step", "return theta - dt * gain * s[:, None]", "Y is missing"),
-    ("adaptive_step", "return theta - dt * Y * s[:, None]", "table of gains"),
-    ("adaptive_step", "return -dt * gain * Y * s[:, None]", "only the change"),
     ("adaptive_step", "return theta - dt * gain * Y * s", "\\(3, *20\\)"),
-    ("adaptive_step", "return theta - dt * gain * Y * s[::-1, None]", "another joint"),
     ("adaptive_step", "theta -= dt * gain * Y * s[:, None]\n    return theta", "changes what it was given"),
     ("adaptive_step", "return theta * (1 - dt * gain * Y * s[:, None])", ""),
 ]
