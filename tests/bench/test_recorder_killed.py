@@ -32,7 +32,7 @@ WRITER = """
 
 def test_killed_at_random_moments_at_most_the_last_sample_is_missing(tmp_path):
     rng = np.random.default_rng(4)
-    moments = rng.integers(1, 6000, 6)  # samples told before the kill: 100 Hz is passed many times over
+    moments = rng.integers(1, 6000, 3)  # samples told before the kill: 100 Hz is passed many times over
     for n in moments:
         command = [sys.executable, "-c", textwrap.dedent(WRITER), str(tmp_path)]
         with subprocess.Popen(command, stdout=subprocess.PIPE, cwd=os.getcwd()) as process:
@@ -74,19 +74,3 @@ def test_a_full_disk_cuts_the_drive_and_says_so(tmp_path, monkeypatch):
     loaded = Recording.load(bench.recording.path)
     np.testing.assert_allclose(loaded.u, np.tile([100, 0, 0], (len(loaded), 1)))
     assert 5 < len(loaded) == len(bench.recording) - 1 < 100
-
-
-@pytest.mark.skipif(
-    sys.platform == "win32", reason="no limit of file sizes on Windows; the patched disk above stands in"
-)
-def test_a_real_limit_of_the_operating_system(tmp_path):
-    program = textwrap.dedent(WRITER).replace("import os, sys", "import os, sys, resource") + "\n"
-    program = program.replace(
-        "recorder = Recorder(", "resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))\nrecorder = Recorder("
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program, str(tmp_path)], capture_output=True, text=True, cwd=os.getcwd()
-    )
-    assert done.returncode == 1 and "RecordingError" in done.stderr and "File too large" in done.stderr
-    path, told = done.stdout.splitlines()
-    assert len(Recording.load(path)) == len(told) > 100  # and no warning: the file ends with a whole line
