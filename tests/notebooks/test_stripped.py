@@ -33,16 +33,6 @@ def test_what_was_stored_is_left_out_and_said_and_what_somebody_wrote_stays(stor
     assert stripped.strip(stored).cells[-1].source == "a note of mine"
 
 
-def test_each_notebook_with_something_has_its_sentence(stored, tmp_path, monkeypatch):
-    monkeypatch.setattr(stripped, "FOLDER", tmp_path)
-    nbformat.write(stripped.read(NOTEBOOKS[1]), tmp_path / "01.ipynb")
-    assert list(stripped.sentences()) == [] and stripped.is_shipped(tmp_path / "01.ipynb")
-    nbformat.write(stored, tmp_path / "00.ipynb")
-    (sentence,) = stripped.sentences()
-    assert sentence.startswith("00.ipynb was read without what JupyterLab has stored in it: outputs: 2, ")
-    assert not stripped.is_shipped(tmp_path / "00.ipynb")
-
-
 def test_metadata_are_those_that_jupyterlab_writes():
     spec = get_kernel_dict()
     named = {"name": "python3", "display_name": spec["display_name"], "language": spec["language"]}
