@@ -1,4 +1,4 @@
-"""Notebooks 12 and 13: what check says of wrong answers, and which right ones it takes."""
+"""Notebooks 12 to 15: what check says of wrong answers, and which right ones it takes."""
 
 import re
 
@@ -27,7 +27,18 @@ def of_gain(
     return f"K = {gain}\n    theta = {theta}\n    return theta, (P - {P}) / forgetting"
 
 
+def law(v="qdd + kd * (rate - qd) + kp * (place - q)", u="model(q, qd, v)", read="place, rate, qdd = reference"):
+    return f"{read}\n    v = {v}\n    return {u}"
+
+
 MISSED = "np.linalg.norm(measured - predicted)"
+ROWS = "theta = theta.copy()\n    for j in range(3):\n        theta[j] -= dt * gain[j] * Y[j] * s[j]\n    return theta"
+MATRIX = (
+    "rest = model(q, qd, np.zeros(3))\n"
+    "    M = np.column_stack([model(q, qd, one) - rest for one in np.eye(3)])\n"
+    "    v = reference[2] + kd * (reference[1] - qd) + kp * (reference[0] - q)\n"
+    "    return M @ v + rest"
+)
 WRONG = [  # function, its body, what is said
     ("least_squares", f"{LINES}return theta, np.sqrt(np.diag(C) * r.var())", "about its own mean"),
     ("least_squares", f"{LINES}return theta", "2 results"),
@@ -39,6 +50,14 @@ WRONG = [  # function, its body, what is said
     ("rls_step", of_gain().replace("theta = theta + ", "theta += "), "changes what it was given"),
     ("fit_percent", "return 100 * (1 - np.var(measured - predicted) / np.var(measured))", "share of the variance"),
     ("fit_percent", f"return 100 * (1 - {MISSED} / np.std(measured))", "both have to be the same"),
+    ("computed_torque", law("qdd - kd * (rate - qd) - kp * (place - q)"), "both errors have the wrong sign"),
+    ("computed_torque", law(u="model(q, qd, 0.01 * v)"), ""),
+    ("computed_torque", law("qdd + kd @ (rate - qd) + kp @ (place - q)"), ""),
+    ("computed_torque", "e = reference[0]\n    e -= q\n    return model(q, qd, reference[2] + kp * e)", ""),
+    ("adaptive_step", "return theta - dt * gain * (Y.T @ s)", "the s of its own joint"),
+    ("adaptive_step", "return theta - dt * gain * Y * s", "\\(3, *20\\)"),
+    ("adaptive_step", "theta -= dt * gain * Y * s[:, None]\n    return theta", "changes what it was given"),
+    ("adaptive_step", "return theta * (1 - dt * gain * Y * s[:, None])", ""),
 ]
 
 
@@ -51,7 +70,6 @@ def test_a_wrong_answer_is_told_by_its_symptom(capsys, name, body, words):
 ROUTES = [
     ("least_squares", f"{LINES}return theta, np.sqrt(np.diag(C) * {LEFT})"),
     ("least_squares", f"{LINES}return np.linalg.lstsq(A, y, rcond=None)[0], np.sqrt(np.diag(C) * {LEFT})"),
-    ("regressor", of_rows()),
     ("rls_step", of_gain()),
     (
         "rls_step",
@@ -59,6 +77,10 @@ ROUTES = [
         "    return theta + P @ phi * (y - phi @ theta), P",
     ),
     ("fit_percent", f"return 100 - 100 * {MISSED} / np.linalg.norm(measured - measured.mean())"),
+    ("computed_torque", law("qdd - kd * (qd - rate) - kp * (q - place)")),
+    ("computed_torque", MATRIX),
+    ("adaptive_step", ROWS),
+    ("adaptive_step", "return theta - dt * (gain * (np.diag(s) @ Y))"),
 ]
 
 
