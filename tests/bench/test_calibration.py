@@ -107,15 +107,8 @@ def test_what_no_line_fits_is_refused(change, match):
     refused(match, fit_calibration, *change(*experiment()))
 
 
-@pytest.mark.parametrize(
-    ("fields", "match"),
-    [
-        ({"slope": (189, 0, 191)}, "joint 2 is 0"),
-        ({"slope": (189, math.nan, 191)}, "slope holds nan"),
-    ],
-)
-def test_impossible_calibrations(fields, match):
-    refused(match, JointCalibration, **{"slope": (189, 122, 191), "zero": (512, 512, 512)} | fields)
+def test_an_impossible_calibration():
+    refused("joint 2 is 0", JointCalibration, slope=(189, 0, 191), zero=(512, 512, 512))
 
 
 # ---- files

@@ -88,7 +88,6 @@ def test_impossible_limits():
         (Arm(l=(1, 1, 1), m=(1, 1, 1), lc=(0, 0, 0)), {}, "has no joint limits"),
         (IR50P, {"period": 0}, "period = 0"),
         (IR50P, {"harmonics": 1}, "harmonics = 1"),
-        (IR50P, {"max_joint_speed": -1}, "max_joint_speed"),
         (IR50P, {"margin": -1}, "margin = -1"),
         (IR50P, {"standing": np.nan}, "standing = nan"),
         (IR50P, {"tries": 0.5}, "tries = 0.5"),

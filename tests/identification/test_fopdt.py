@@ -85,14 +85,14 @@ def test_step_in_the_first_sample_needs_the_input_before_it():
 
 @pytest.mark.parametrize("kind", ["a step", "many steps, uneven times"])
 def test_true_values_lie_within_two_standard_errors_95_times_in_100(kind):
-    """White noise, 25 seeds, three parameters. Binomial: 95.4 % of 75 is 71.6 +- 1.8; 65 is 3.6 deviations off."""
+    """White noise, 15 seeds, three parameters. Binomial: 95.4 % of 45 is 42.9 +- 1.4; 38 is 3.5 deviations off."""
     rng, t, u = np.random.default_rng(7), T_S, STEP
     if kind != "a step":
         t, u = np.sort(rng.uniform(0, 4, 200)), np.repeat(rng.choice([0.0, 1.0], 8), 25)
     truth = {"K": -1.5, "T": 0.5, "L": 0.133}
     y = FOPDT(**truth, y0=3.0).response(t, u)
-    z = np.array([errors(fit_fopdt(t, u, y + noise(seed, 0.06)), **truth) for seed in range(25)])
-    assert 65 <= (z < 2).sum() < 75
+    z = np.array([errors(fit_fopdt(t, u, y + noise(seed, 0.06)), **truth) for seed in range(15)])
+    assert 38 <= (z < 2).sum() < 45
     assert (z < 4).all()
 
 

@@ -245,7 +245,6 @@ def test_bad_input_gets_a_sentence(change, words):
 
 def test_more_refusals():
     refused("need an Arm", simulate, THESIS_C, stops=True)
-    refused(r"limit of joint 1 = 0\.0: give one number > 0", ContinuousPID, kp=(1, 1, 1), limit=0)
     refused("smooth motion", simulate, IR50P, ContinuousPID(kp=(1, 1, 1)))
     refused(r"command at t = 0 s.*nan", simulate, SMOOTH, Constant([0, np.nan, 0]))
     refused("shape", simulate, SMOOTH, Constant([0, 0]))

@@ -25,7 +25,7 @@ def pictures():
     return [paint(T, seed=k, rim=(1.0, 0.4)[k % 2]) for k, T in enumerate(poses)]
 
 
-@pytest.mark.parametrize("pattern", [(8, 6), (5, 4), (7, 7), (10, 7)])
+@pytest.mark.parametrize("pattern", [(5, 4), (10, 7)])
 def test_a_wrong_pattern_is_refused_within_a_small_multiple_of_the_time_of_the_right_one(pictures, pattern):
     def refused():
         with pytest.raises(CalibrationError, match=r"pattern=\(9, 6\)"):
