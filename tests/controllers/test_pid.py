@@ -92,20 +92,12 @@ def test_reset_forgets():
     assert (run(pid, np.ones((20, 3))) == first).all()
 
 
-@pytest.mark.parametrize("pause", [0.005, 0.02, 0.15, 0.45, 2.0])
+@pytest.mark.parametrize("pause", [0.005, 0.02, 0.15, 60.0])
 def test_after_a_pause_the_speed_is_taken_over_its_true_length(pause):
     pid = PID(kp=0, kd=1, ki=1, filter_hz=np.inf)
     pid.step(0.0, ZERO, hold(0, 0, 0))
     u = pid.step(pause, np.full(3, 0.3), hold(0, 0, 0))
     np.testing.assert_allclose(u, -0.3 / pause - 0.3 * min(pause, 0.1), rtol=1e-9)  # the integral counts ten periods
-
-
-@pytest.mark.filterwarnings("ignore:t = 59")
-def test_after_a_long_pause_the_integral_takes_ten_periods_at_most_and_time_never_runs_back():
-    pid = PID(kp=(0, 0, 0), ki=(1, 1, 1))
-    pid.step(0.0, ZERO, hold(1, 1, 1))
-    np.testing.assert_allclose(pid.step(60.0, np.zeros(3), hold(1, 1, 1)), 0.01 + 0.10)
-    np.testing.assert_allclose(pid.step(59.0, np.zeros(3), hold(1, 1, 1)), 0.01 + 0.10)
 
 
 @pytest.mark.parametrize(
@@ -143,11 +135,11 @@ def test_header_says_gains_and_filters():
     assert PID(kp=1, filter_hz=np.inf).header()["filter_hz"] == PID(kp=1).header()["position_filter_hz"] == "inf"
 
 
-def test_time_that_runs_backwards_is_said():
-    pid = PID(kp=1, kd=1)
-    pid.step(5.0, ZERO, hold(0, 0, 0))
+def test_time_that_runs_backwards_is_said_and_adds_nothing():
+    pid = PID(kp=1, ki=1, kd=1)
+    before = pid.step(5.0, ZERO, hold(1, 1, 1))
     with pytest.warns(UserWarning, match=r"t = 4\.99 s after 5 s: time runs backwards"):
-        pid.step(4.99, ZERO, hold(0, 0, 0))
+        np.testing.assert_array_equal(pid.step(4.99, ZERO, hold(1, 1, 1)), before)
     pid.reset()
     pid.step(0.0, ZERO, hold(0, 0, 0))  # another run: no word
     refused("at t = nan s", pid.step, np.nan, ZERO, hold(0, 0, 0))

@@ -17,7 +17,6 @@ from ir50p_lab.modelling import (
     Arm,
     Friction,
     friction_torque,
-    load_arm,
 )
 
 GOOD = {"l": (0.3, 0.2, 0.3), "m": (3, 1, 1), "lc": (0.1, 0.1, 0.1)}
@@ -123,15 +122,6 @@ def test_a_file_in_another_encoding_is_told_which_to_use(encoding, letter, tmp_p
 
 def test_missing_file_is_named(tmp_path):
     refused(r"nowhere\.toml.*IR50P_ARM", Arm.load, tmp_path / "nowhere.toml", error=ArmError)
-
-
-def test_course_arm_comes_from_the_environment(tmp_path, monkeypatch):
-    monkeypatch.delenv("IR50P_ARM", raising=False)
-    assert load_arm() is IR50P
-    THESIS_RODS.save(tmp_path / "rods.toml")
-    monkeypatch.setenv("IR50P_ARM", str(tmp_path / "rods.toml"))
-    assert load_arm() == THESIS_RODS
-    assert load_arm(tmp_path / "rods.toml") == THESIS_RODS
 
 
 # --- friction ---------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def panels(svg):
-    """Panels of a chart's picture, each with curves (t, values, colour, dashed), marks (s), levels and words."""
+    """Panels of a chart's picture, each with curves (t, values, colour, dashed), marks (s) and words."""
     return [_panel(group) for group in ET.fromstring(svg).findall("g")]
 
 
@@ -27,8 +27,7 @@ def _panel(group):
         curves.append(SimpleNamespace(t=to_t(x), values=to_value(y), **look))
     paths = [one.get("d") for one in clip.findall("path")]
     marks = [to_t(float(found[1])) for path in paths if (found := re.fullmatch(r"M([\d.]+) 0v.*", path))]
-    levels = [to_value(float(found[1])) for path in paths if (found := re.fullmatch(r"M0 ([\d.]+)h.*", path))]
-    return SimpleNamespace(curves=curves, marks=marks, levels=levels, words=" ".join(words for *_, words in texts))
+    return SimpleNamespace(curves=curves, marks=marks, words=" ".join(words for *_, words in texts))
 
 
 def _number(words):

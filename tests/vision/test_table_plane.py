@@ -7,21 +7,13 @@ from refusals import refused
 from ir50p_lab.errors import CalibrationError, VisionError
 from ir50p_lab.vision.board_pose import board_points, board_pose, inverse_transform, transform
 from ir50p_lab.vision.pinhole import Pinhole
+from ir50p_lab.vision.rendering import look_at
 from ir50p_lab.vision.table_plane import TablePlane
 
 CAMERA = Pinhole([[705, 0, 322.5], [0, 702, 238.1], [0, 0, 1]], (-0.28, 0.11, 6e-4, -4e-4, -0.02))
 
 
-def looking_at(target, eye, up=(0, 0, 1)):
-    z = np.subtract(target, eye) / np.linalg.norm(np.subtract(target, eye))
-    x = np.cross(z, up) / np.linalg.norm(np.cross(z, up))
-    T = np.eye(4)
-    T[:3, :3] = np.vstack([x, np.cross(z, x), z])
-    T[:3, 3] = -T[:3, :3] @ eye
-    return T
-
-
-POSE = looking_at((0.38, 0.0, 0.0), (0.95, 0.25, 0.75))
+POSE = look_at((0.95, 0.25, 0.75), (0.38, 0.0, 0.0))
 PLACES = np.array([[x, y] for x in (0.25, 0.35, 0.45) for y in (-0.2, 0.0, 0.2)])
 LYING = np.array([[1, 0, 0, 0.28], [0, -1, 0, 0.06], [0, 0, -1, 0], [0, 0, 0, 1.0]])
 
@@ -50,7 +42,7 @@ def test_a_random_camera_gives_the_same_on_both_routes():
     rng = np.random.default_rng(1)
     for _ in range(50):
         eye = [rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0.3, 1.5)]
-        plane = TablePlane(CAMERA, looking_at((*rng.uniform(-0.1, 0.1, 2), 0), eye))
+        plane = TablePlane(CAMERA, look_at(eye, (*rng.uniform(-0.1, 0.1, 2), 0)))
         height, xy = rng.uniform(0, 0.05), rng.uniform((200, 150), (440, 330), (20, 2))
         assert np.allclose(plane.to_table(xy, height), by_rays(plane, xy, height), atol=1e-12)
 
@@ -97,7 +89,7 @@ def test_corners_of_another_board_are_refused():
 
 
 def test_pixels_that_look_past_the_table_are_refused():
-    plane = TablePlane(CAMERA, looking_at((5.0, 0, 0.4), (-0.5, 0, 0.5)))
+    plane = TablePlane(CAMERA, look_at((-0.5, 0, 0.5), (5.0, 0, 0.4)))
     refused("horizon", plane.to_table, (320, 100), error=VisionError)
     refused("no ray", plane.to_table, (1e4, 300))
 

@@ -32,7 +32,6 @@ def made(text):
     return names["PID"]
 
 
-GROWN = "grown = self.integral + self.ki * error * self.period"
 ADD = "self.integral = self.integral + self.ki * error * self.period"
 WINDS = "winds_up = (np.abs(push) > self.limit) & (push * error > 0)"
 REST = "self.integral = np.where(winds_up, self.integral, grown)"

@@ -1,4 +1,4 @@
-"""Friction and motors: what check says of wrong answers, and which right ones it takes."""
+"""Steps, ways, friction and motors: which right answers check takes; a spring balance."""
 
 import numpy as np
 import pytest
@@ -14,6 +14,9 @@ MOTOR = "gain * u_pwm - damping * qd"
 
 
 RIGHT = [
+    ("integrate", "dt * np.arange(steps + 1)", "np.linspace(0, duration, steps + 1)"),
+    ("quintic", "return q, qd, qdd", "return np.array([q, qd, qdd])"),
+    ("quintic", "(10 * s**3 - 15 * s**4 + 6 * s**5)", "s**3 * (10 - 15 * s + 6 * s**2)"),
     ("friction_torque", SUM, "return offset + fv * qd + np.where(qd == 0, 0, np.copysign(dry, qd))"),
     ("friction_torque", SUM, "return np.array([fv[i] * qd[i] + np.sign(qd[i]) * dry[i] + offset[i] for i in range(3)])"),
     ("friction_torque", DRY, "fade = np.exp(-np.abs(qd / qs) ** 2); dry = fc * (1 - fade) + fs * fade"),
