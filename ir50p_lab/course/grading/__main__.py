@@ -1,4 +1,4 @@
-"""`python3 -m ir50p_lab grade FOLDER`: the table of a class as CSV, and one page."""
+"""Check what a class has handed in, the ZIPs of 'pack' or folders: a table (CSV) and a page (HTML)."""
 
 import argparse
 import csv
@@ -47,19 +47,15 @@ def _plain(value):
 
 
 def main(arguments=None):
-    """Check a class; return the exit code."""
-    parser = argparse.ArgumentParser(
-        prog="python3 -m ir50p_lab grade",
-        description="Check what a class has handed in, the ZIPs of 'pack' or folders: a table and a page.",
-    )
+    """Check a class."""
+    parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab grade", description=__doc__)
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder with the hand-ins")
     parser.add_argument("--to", type=Path, default=Path("."), metavar="FOLDER", help="where table and page go")
     options = parser.parse_args(arguments)
     try:
         handed_in = submissions(options.folder)
     except LabError as problem:
-        print(problem, file=sys.stderr)
-        return 1
+        sys.exit(str(problem))
     print(sandbox.isolation())
     found = judged(handed_in)
     options.to.mkdir(parents=True, exist_ok=True)
@@ -69,8 +65,7 @@ def main(arguments=None):
         if one.trouble:
             print(f"{one.name}: {one.trouble}")
     print(f"{len(handed_in)} hand-ins: {options.to / 'class.csv'} and {options.to / 'class.html'}")
-    return 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    main()

@@ -4,6 +4,7 @@ Each function is judged with the course's own in place of the earlier ones that 
 nobody here. The verdict is made where the student's code runs, so whoever gets past the gate can forge one.
 """
 
+import contextlib
 import json
 import os
 import re
@@ -63,12 +64,10 @@ def lock_up(seconds=None):
     except ImportError:
         return
     if os.geteuid() == 0:  # whom the limit of processes does not hold
-        try:
+        with contextlib.suppress(OSError):  # a sandbox has its own root, who is nobody outside
             os.setgroups([])
             os.setresgid(_NOBODY, _NOBODY, _NOBODY)
             os.setresuid(_NOBODY, _NOBODY, _NOBODY)
-        except OSError:
-            pass  # a sandbox has its own root, who is nobody outside
     limits = {"FSIZE": 0, "NOFILE": 64, "NPROC": 0, "CORE": 0}
     if sys.platform == "linux":  # macOS counts what is shared
         limits["AS"] = _MEMORY

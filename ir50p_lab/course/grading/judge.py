@@ -26,7 +26,6 @@ from ir50p_lab.inputs import whole
 
 SECONDS = 300  # for one arm, by the clock
 _LONGEST = 1 << 16  # letters of a line that a hand-in may say
-_CHILD = ("-P", "-m", "ir50p_lab.course.grading.racer")
 
 
 def judged(hand_in_of, arms=3, *, seeds=None, seconds=SECONDS):
@@ -61,7 +60,7 @@ def _moved_in(path, room):
 
 def _race(folder, words, seconds, seed):
     world = World(seed)
-    child = sandbox.started([*words, sys.executable, *_CHILD], folder, text=True, cwd=folder)
+    child = sandbox.started(words, "racer", folder, text=True, cwd=folder)
     late = threading.Timer(seconds, sandbox.end, [child])
     late.start()
     try:
@@ -91,10 +90,8 @@ def _answered(world, child):
 
 
 def main(arguments=None):
-    """Judge a file; return the exit code."""
-    parser = argparse.ArgumentParser(
-        prog="python3 -m ir50p_lab judge", description="Race a hand-in of notebook 19 on arms that nobody has seen."
-    )
+    """Judge a file."""
+    parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab judge", description="Race a hand-in of notebook 19.")
     parser.add_argument("file", type=Path, metavar="FILE", help="results/unknown_arm.py of the student's folder")
     parser.add_argument("--arms", type=int, default=20, metavar="N", help="how many (20)")
     options = parser.parse_args(arguments)
@@ -102,10 +99,8 @@ def main(arguments=None):
     try:
         print(judged(options.file, options.arms))
     except LabError as problem:
-        print(problem, file=sys.stderr)
-        return 1
-    return 0
+        sys.exit(str(problem))
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    main()

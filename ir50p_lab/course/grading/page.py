@@ -50,27 +50,21 @@ def _predictions(handed_in):
         said = "<br>".join(f"{count} × <q>{_text(why)}</q>" for why, count in reasons)
         hits = f"{round(shares[name] * len(many))} of {len(many)}"
         rows.append((_text(title(name)), hits, _histogram(many), _text(truth), said))
-    return _table(
-        ("what", "missed by", "guess over truth, in steps of a quarter; farther: at an end", "truth", "reasons given"),
-        rows,
-        "self",
-    )
+    steps = "guess over truth, in steps of a quarter; farther: at an end"
+    return _table(("what", "missed by", steps, "truth", "reasons given"), rows, "self")
 
 
 def _histogram(entries):
     """First guesses over the truth, dashed in the middle; what is farther or of the other sign stands at the ends."""
     counts = Counter(_place(one["guess"], one["truth"]) for one in entries)
     most = max(counts.values())
-    bars = "".join(
-        f'<rect x="{12 * place}" y="{40 - 36 * count / most:.1f}" width="10" height="{36 * count / most:.1f}"/>'
-        for place, count in sorted(counts.items())
-    )
+    tall = {12 * place: 36 * count / most for place, count in sorted(counts.items())}
+    bars = "".join(f'<rect x="{x}" y="{40 - y:.1f}" width="10" height="{y:.1f}"/>' for x, y in tall.items())
     middle, width = 12 * _SIDE + 5, 12 * (2 * _SIDE + 1)
     low, high = (sum(sign * (one["guess"] - one["truth"]) > 0 for one in entries) for sign in (-1, 1))
-    return (
-        f'<svg width="{width}" height="40" role="img" aria-label="{low} too low, {high} too high" fill="#56B4E9">{bars}'
-        f'<path d="M{middle} 0V40" stroke="#D55E00" stroke-width="2" stroke-dasharray="4 3"/></svg>'
-    )
+    about = f'role="img" aria-label="{low} too low, {high} too high"'
+    dashes = f'<path d="M{middle} 0V40" stroke="#D55E00" stroke-width="2" stroke-dasharray="4 3"/>'
+    return f'<svg width="{width}" height="40" {about} fill="#56B4E9">{bars}{dashes}</svg>'
 
 
 def _place(guess, truth):
@@ -84,12 +78,11 @@ def _place(guess, truth):
 def _functions(handed_in, found):
     rows = []
     for name in ORDER:
-        counts = Counter(verdicts.get(name, ("open", ""))[0] for verdicts in found)
+        of_all = [verdicts.get(name, ("open", "")) for verdicts in found]
+        counts = Counter(state for state, _ in of_all)
         if counts["open"] == len(found):
             continue
-        said = Counter(
-            _without_numbers(verdicts[name][1]) for verdicts in found if verdicts.get(name, ("",))[0] == "wrong"
-        )
+        said = Counter(_without_numbers(says) for state, says in of_all if state == "wrong")
         tried = Counter(_without_numbers(says) for one in handed_in for says in one.attempts.get(name, ()) if says)
         rows.append((notebook_of(name), f"<code>{name}</code>", _bar(counts), _commonest(said), _commonest(tried)))
     key = "".join(f"<span style='color:{colour}'>■</span> {state} &nbsp;" for state, colour in _COLOURS.items())
@@ -110,11 +103,10 @@ def _students(handed_in, found):
     for one, verdicts in zip(handed_in, found, strict=True):
         counts = Counter(verdicts.get(name, ("open", ""))[0] for name in ORDER)
         asked = "".join(f"<li>{_text(question)}</li>" for question in questions(one, verdicts))
-        wrong = "".join(
-            f"<p><code>{name}</code>: {_text(says)}</p>" for name, (state, says) in verdicts.items() if state == "wrong"
-        )
-        name = _text(" and ".join([one.name, *one.partners]))
-        opened = f"<details><summary>{name}</summary><ol>{asked}</ol>{wrong}</details>"
+        told = {name: says for name, (state, says) in verdicts.items() if state == "wrong"}
+        wrong = "".join(f"<p><code>{name}</code>: {_text(says)}</p>" for name, says in told.items())
+        names = _text(" and ".join([one.name, *one.partners]))
+        opened = f"<details><summary>{names}</summary><ol>{asked}</ol>{wrong}</details>"
         lent = ", ".join(name for name, (state, _) in verdicts.items() if state == "loan")
         reasons = sum(bool(entry["why"]) for entry in one.predictions.values())
         said = f"<span class=self>{len(one.predictions)} predictions, {reasons} reasons</span>"
@@ -124,13 +116,10 @@ def _students(handed_in, found):
 
 
 def _bar(counts):
-    total = sum(counts.values())
+    shares = {state: counts[state] / counts.total() for state in _COLOURS}
     words = ", ".join(f"{counts[state]} {state}" for state in _COLOURS if counts[state])
-    parts = "".join(
-        f"<span style='background:{colour};width:{100 * counts[state] / total:.1f}%'></span>"
-        for state, colour in _COLOURS.items()
-    )
-    return f"<span class=bar>{parts}</span><small>{words}</small>"
+    parts = [f"<span style='background:{_COLOURS[state]};width:{x:.1%}'></span>" for state, x in shares.items()]
+    return f"<span class=bar>{''.join(parts)}</span><small>{words}</small>"
 
 
 def _table(head, rows, kind=""):

@@ -1,5 +1,6 @@
 """A process group of its own for each student, inside bubblewrap where the system has it."""
 
+import contextlib
 import json
 import os
 import shutil
@@ -12,7 +13,6 @@ from ir50p_lab.home import PROJECT, VARIABLE
 
 STATES = "right", "wrong", "loan", "open"
 SECONDS = 120  # for one student, by the clock
-_INSIDE = ("-P", "-m", "ir50p_lab.course.grading.inside")
 ENDED = "its process ended, or did not end in time: an endless loop, or more memory than it may have?"
 
 
@@ -56,7 +56,7 @@ def verdicts(functions, before, seconds=SECONDS):
 
 def _run(functions, before, seconds):
     """What a process says until it ends or is ended: {name: (state, sentence)}."""
-    child = started([*before, sys.executable, *_INSIDE], os.devnull)
+    child = started(before, "inside", os.devnull)
     try:
         said, _ = child.communicate(json.dumps(functions).encode() + b"\n", timeout=seconds)
     except subprocess.TimeoutExpired:
@@ -71,8 +71,9 @@ def _run(functions, before, seconds):
         return {}
 
 
-def started(command, home, **more):
-    """Return a process in a group of its own, with this home and one thread; it hears and speaks through pipes."""
+def started(before, module, home, **more):
+    """Return a module's process in a group of its own, with this home and one thread; it hears and speaks by pipes."""
+    command = [*before, sys.executable, "-P", "-m", f"ir50p_lab.course.grading.{module}"]
     variables = os.environ | {VARIABLE: str(home), "OPENBLAS_NUM_THREADS": "1"}
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     return subprocess.Popen(command, env=variables, start_new_session=True, **pipes, **more)
@@ -80,7 +81,5 @@ def started(command, home, **more):
 
 def end(child):
     """End a process and everything that it started."""
-    try:
+    with contextlib.suppress(ProcessLookupError, PermissionError):  # it is gone already
         os.killpg(child.pid, signal.SIGKILL) if hasattr(os, "killpg") else child.kill()
-    except (ProcessLookupError, PermissionError):
-        pass  # it is gone already

@@ -5,13 +5,11 @@ import re
 import zipfile
 import zlib
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from ir50p_lab.course.robot.catalogue import ORDER
 from ir50p_lab.errors import InputError
 
 _MOST = {"function": 100_000, "lab book": 5_000_000}  # bytes of one file
-_BOOK = "results/lab_book.json"
 
 
 class _Refused(Exception):  # noqa: N818  (becomes the verdict)
@@ -39,7 +37,6 @@ class Submission:
 
 def submissions(folder):
     """Return all Submissions in a folder, sorted by name: ZIPs, and folders that contain my_robot or notebooks."""
-    folder = Path(folder)
     if not folder.is_dir():
         raise InputError(f"'{folder}' is not a folder: give the one that holds the hand-ins of the class")
     found = [path for path in sorted(folder.iterdir()) if path.suffix.lower() == ".zip" or _home(path)]
@@ -54,7 +51,7 @@ def _submission(path):
         reader = _of_folder(path) if path.is_dir() else _of_zip(path)
         made.functions = {name: reader(f"my_robot/_{name}.py", _MOST["function"]) for name in ORDER}
         made.functions = {name: text for name, text in made.functions.items() if text is not None}
-        _read_book(made, reader(_BOOK, _MOST["lab book"]) or "{}")
+        _read_book(made, reader("results/lab_book.json", _MOST["lab book"]) or "{}")
     except (_Refused, OSError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error) as error:
         made.trouble = str(error)
     return made

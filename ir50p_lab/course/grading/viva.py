@@ -16,14 +16,10 @@ def missed(entry):
 
 def _on_a_guess(predictions):
     """The guess that missed most; one with a reason comes first."""
-    name = max(
-        predictions,
-        key=lambda one: (missed(predictions[one]) > 0, predictions[one]["why"] != "", missed(predictions[one])),
-        default=None,
-    )
-    if name is None or not missed(predictions[name]):
+    off = {name: entry for name, entry in predictions.items() if missed(entry)}
+    if not off:
         return "No guess of yours missed. Of which one were you least sure, and why?"
-    entry = predictions[name]
+    name, entry = max(off.items(), key=lambda one: (one[1]["why"] != "", missed(one[1])))
     said = f"“{entry['why'][:200]}” Explain that with a sketch." if entry["why"] else "Why is it so?"
     numbers = f"you guessed {entry['guess']:.4g} {entry['unit']}, it is {entry['truth']:.4g}"
     return f"{title(name)}: {numbers}. {said}"
@@ -38,11 +34,9 @@ def _on_tries(attempts):
 
 
 def _on_a_loan(verdicts):
-    for asked, state in (
-        ("{} is on loan: go through its lines, and say what yours lacked.", "loan"),
-        ("{} is not right: where would you look first?", "wrong"),
-    ):
-        for name, (found, _) in verdicts.items():
-            if found == state:
-                return asked.format(name)
+    first = {state: name for name, (state, _) in reversed(verdicts.items())}
+    if "loan" in first:
+        return f"{first['loan']} is on loan: go through its lines, and say what yours lacked."
+    if "wrong" in first:
+        return f"{first['wrong']} is not right: where would you look first?"
     return "Open the function that you are proudest of: which line holds the idea?"
