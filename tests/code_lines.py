@@ -36,7 +36,7 @@ STILL = {
     "bench": 2384,
     "identification": 1486,
     "vision": 2282,
-    "course": 9133,
+    "course": 9130,
     "course/publishing": 698,
     "launcher": 613,
     "root": 359,

@@ -8,12 +8,10 @@ import numpy as np
 from ir50p_lab.bench import UNIT, SimulatedBench, connect
 from ir50p_lab.bench.rest import rest_pose
 from ir50p_lab.course import my_robot
-from ir50p_lab.course.draw.style import COLOURS, SETPOINT, origin, subplots
+from ir50p_lab.course.draw.style import JOINTS, SETPOINT, origin, subplots
 from ir50p_lab.course.lab_book.results import arm_at_rest, arm_that_answers
 from ir50p_lab.errors import BenchError, BoardLostError
 from ir50p_lab.modelling.named_arms import load_arm
-
-_COLOURS = COLOURS["blue"], COLOURS["orange"], COLOURS["green"]
 
 
 def go(controller, reference, seconds):
@@ -79,7 +77,7 @@ def circle_figure(centre, radius, recording, wanted, **tips):
     above.plot(centre[0] + radius * np.cos(turned), centre[1] + radius * np.sin(turned), label="wanted", **SETPOINT)
     height.axhline(centre[2], **SETPOINT)
     behind.axhline(0, **SETPOINT)
-    for (label, tip), colour in zip(tips.items(), _COLOURS, strict=False):
+    for (label, tip), colour in zip(tips.items(), JOINTS, strict=False):
         t = recording.t[-len(tip) :]
         above.plot(*tip[:, :2].T, color=colour, lw=1.2, label=label)
         height.plot(t, tip[:, 2], color=colour, lw=1.2)

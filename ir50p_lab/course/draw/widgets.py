@@ -183,7 +183,7 @@ def hear(do):
     for text in dict.fromkeys(str(warning.message) for warning in caught):
         print(text, file=said)
     text = html.escape(said.getvalue().rstrip()).replace("\n", "<br>")
-    return text + (alarm(explain(stopped)) if stopped else ""), stopped
+    return text + ("" if stopped is None else alarm(explain(stopped))), stopped
 
 
 def explain(error):

@@ -91,7 +91,8 @@ def _answered(world, child):
 
 def main(arguments=None):
     """Judge a file."""
-    parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab judge", description="Race a hand-in of notebook 19.")
+    says = "Race a hand-in of notebook 19 on arms that nobody has seen."
+    parser = argparse.ArgumentParser(prog="python3 -m ir50p_lab judge", description=says)
     parser.add_argument("file", type=Path, metavar="FILE", help="results/unknown_arm.py of the student's folder")
     parser.add_argument("--arms", type=int, default=20, metavar="N", help="how many (20)")
     options = parser.parse_args(arguments)

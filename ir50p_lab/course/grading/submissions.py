@@ -5,6 +5,7 @@ import re
 import zipfile
 import zlib
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from ir50p_lab.course.robot.catalogue import ORDER
 from ir50p_lab.errors import InputError
@@ -37,6 +38,7 @@ class Submission:
 
 def submissions(folder):
     """Return all Submissions in a folder, sorted by name: ZIPs, and folders that contain my_robot or notebooks."""
+    folder = Path(folder)
     if not folder.is_dir():
         raise InputError(f"'{folder}' is not a folder: give the one that holds the hand-ins of the class")
     found = [path for path in sorted(folder.iterdir()) if path.suffix.lower() == ".zip" or _home(path)]

@@ -7,8 +7,6 @@ import numpy as np
 from ir50p_lab.errors import InputError
 from ir50p_lab.home import path_setting
 
-_VARIABLE = "IR50P_CLAIMS"
-
 
 class ClaimError(AssertionError):
     """A claim of the text that does not hold for these numbers; the message is the sentence, its value and limit."""
@@ -57,6 +55,6 @@ def _words(number):
 
 
 def _log(text, room):
-    if path := path_setting(_VARIABLE):
+    if path := path_setting("IR50P_CLAIMS"):
         with path.open("a", encoding="utf-8") as file:
             file.write(json.dumps({"claim": text, "room": room.ravel().tolist()}) + "\n")

@@ -6,12 +6,10 @@ from pathlib import Path
 from ir50p_lab import home
 from ir50p_lab.course.lab_book.student_file import read_json, write_json
 
-_VARIABLE = "IR50P_PROGRESS"
-
 
 def progress_path() -> Path:
     """Return where the progress file is: $IR50P_PROGRESS, else progress.json in the student's folder."""
-    return home.path_setting(_VARIABLE) or home.home() / "progress.json"
+    return home.path_setting("IR50P_PROGRESS") or home.home() / "progress.json"
 
 
 def read_progress() -> dict[str, str]:
