@@ -41,7 +41,7 @@ STILL = {
     "launcher": 613,
     "root": 359,
     "all": 19_712,
-    "tests": 20_219,
+    "tests": 20_371,
 }
 _NO_CODE = {
     tokenize.COMMENT,

@@ -7,34 +7,104 @@ import pytest
 from cells import cell
 
 from ir50p_lab.course import check, my_robot
-from ir50p_lab.course.checking import tasks
 from ir50p_lab.course.checking.cell import extract
 from ir50p_lab.course.checking.grade import grade
 from ir50p_lab.course.checking.task import Failed, Task, text_of
 from ir50p_lab.course.robot import student_package
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("return t, x", "return t, x.tolist()", "returns a list"),
-        ("return t, x", "return x", "2 results are asked for, t, x, in this order; yours returns one array"),
-        ("return t, x", "return", "it returns nothing"),
-        ("return t, x", "return t, 1.1 * x", "t is right; x"),
-        ("t = dt * np.arange(steps + 1)", "t = np.arange(0, steps)", "t: it returns an array of"),
-    ],
+def fit_line(x, y):
+    A = np.column_stack([x, np.ones_like(x)])
+    inverse = np.linalg.inv(A.T @ A)
+    slope, offset = inverse @ A.T @ y
+    rest = y - slope * x - offset
+    scatter = np.sqrt(rest @ rest / (len(x) - 2))
+    return slope, offset, scatter**2 * inverse, scatter
+
+
+def lines():
+    rng = np.random.default_rng(1)
+    places = [np.sort(rng.uniform(0, 5, n)) for n in (5, 8, 20, 3)]
+    return [(x, 2 * x - 1 + rng.normal(0, 0.3, len(x))) for x in places]
+
+
+FIT_LINE = Task(
+    name="fit_line",
+    returns="slope, offset, covariance (2, 2) and scatter",
+    reference=fit_line,
+    solution_text=text_of(fit_line),
+    cases=lines,
+    results=("slope", "offset", "covariance", "scatter"),
 )
-def test_results_are_graded_one_by_one(old, new, words):
-    task = tasks.task("integrate")
+
+
+def integrate(f, x0, duration, dt):
+    count = round(duration / dt)
+    t = np.linspace(0, duration, count + 1)
+    x = np.empty((count + 1, len(x0)))
+    x[0] = x0
+    for k in range(count):
+        half = x[k] + dt / 2 * f(t[k], x[k])
+        x[k + 1] = x[k] + dt * f(t[k] + dt / 2, half)
+    return t, x
+
+
+def swing(t, x):
+    return np.array([x[1], -x[0]])
+
+
+INTEGRATE = Task(
+    name="integrate",
+    returns="t (k + 1,) and x (k + 1, n)",
+    reference=integrate,
+    solution_text=text_of(integrate),
+    cases=lambda: [(swing, np.array([1.0, 0.5]), 0.3, 0.1), (swing, np.array([0.2, 1.0]), 2.0, 0.2)],
+    results=("t", "x"),
+)
+
+
+def says(task, old, new):
     assert old in task.solution_text
     text = task.solution_text.replace(old, new)
-    assert words in grade(task, extract(cell(text, task.name), task.name, task.leans_on)).says
+    return grade(task, extract(cell(text, task.name), task.name, ())).says
+
+
+@pytest.mark.parametrize("task", [FIT_LINE, INTEGRATE], ids=lambda task: task.name)
+def test_a_right_answer_in_parts_of_unlike_shape_passes(task):
+    assert grade(task, task.reference).state == "right"
+
+
+@pytest.mark.parametrize(
+    ("task", "old", "new", "words"),
+    [
+        (
+            FIT_LINE,
+            "scatter**2 * inverse",
+            "scatter * inverse",
+            "slope, offset and scatter are right; covariance is not",
+        ),
+        (FIT_LINE, "slope, offset, scatter**2", "offset, slope, scatter**2", "slope and offset have changed places"),
+        (
+            FIT_LINE,
+            ", scatter**2 * inverse, scatter",
+            "",
+            "4 results are asked for, slope, offset, covariance, scatter",
+        ),
+        (FIT_LINE, "scatter**2 * inverse, ", "(scatter**2 * inverse).tolist(), ", "returns a list"),
+        (FIT_LINE, "scatter**2 * inverse", "np.diag(scatter**2 * inverse)", r"shape (2,); expected is (2, 2)"),
+        (INTEGRATE, "return t, x", "return x", "2 results are asked for, t, x, in this order; yours returns one array"),
+        (INTEGRATE, "return t, x", "return", "it returns nothing"),
+        (INTEGRATE, "dt * f(t[k]", "dt / 2 * f(t[k]", "t is right; x"),
+        (INTEGRATE, "t = np.linspace(0, duration, count + 1)", "t = np.arange(0, count)", "t: it returns an array of"),
+    ],
+)
+def test_results_are_graded_one_by_one(task, old, new, words):
+    assert words in says(task, old, new)
 
 
 def test_each_result_is_named_in_the_example():
-    task = tasks.task("fit_line")
-    example = grade(task, lambda x, y: (*task.reference(x, y)[:2], np.zeros((2, 2)))).example
-    assert "expected: slope = " in example and "covariance = \n[[0., 0.]" in example.split("yours: ")[1]
+    example = grade(FIT_LINE, lambda x, y: (*fit_line(x, y)[:3], 0.0)).example
+    assert "expected: slope = " in example and "scatter = 0" in example.split("yours: ")[1]
 
 
 def find(rgb, *, hue):

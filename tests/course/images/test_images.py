@@ -76,7 +76,11 @@ LOOP = """
 RIGHT = {"RADII": "radii", "BEST": "max(found, key=found.get)", "ANSWER": "(*found[radius], radius)"}
 WRONG = [  # a change in it, what is said
     ({"RADII": "radii[:3]"}, ""),
+    ({"BEST": "max(found, key=lambda r: r * found[r][0])"}, "a large circle has more of them"),
+    ({"BEST": "max(found)"}, "compare the shares"),
+    ({"BEST": "min(found, key=found.get)"}, "the largest should"),
     ({"ANSWER": "found[radius]"}, "3 results are asked for"),
+    ({"ANSWER": "(found[radius][0], radius, found[radius][1])"}, "share, place, radius"),
     ({"ANSWER": "(found[radius][0], found[radius][1][::-1], radius)"}, "rows and columns"),
 ]
 

@@ -1,4 +1,4 @@
-"""Notebooks 12 to 15: what check says of wrong answers, and which right ones it takes."""
+"""Notebooks 12 and 13: what check says of wrong answers, and which right ones it takes."""
 
 import re
 
@@ -27,37 +27,56 @@ def of_gain(
     return f"K = {gain}\n    theta = {theta}\n    return theta, (P - {P}) / forgetting"
 
 
-def law(v="qdd + kd * (rate - qd) + kp * (place - q)", u="model(q, qd, v)", read="place, rate, qdd = reference"):
-    return f"{read}\n    v = {v}\n    return {u}"
-
-
 MISSED = "np.linalg.norm(measured - predicted)"
-ROWS = "theta = theta.copy()\n    for j in range(3):\n        theta[j] -= dt * gain[j] * Y[j] * s[j]\n    return theta"
-MATRIX = (
-    "rest = model(q, qd, np.zeros(3))\n"
-    "    M = np.column_stack([model(q, qd, one) - rest for one in np.eye(3)])\n"
-    "    v = reference[2] + kd * (reference[1] - qd) + kp * (reference[0] - q)\n"
-    "    return M @ v + rest"
-)
 WRONG = [  # function, its body, what is said
     ("least_squares", f"{LINES}return theta, np.sqrt(np.diag(C) * r.var())", "about its own mean"),
+    ("least_squares", f"{LINES}return theta, np.sqrt(np.diag(C) * np.mean(r**2))", "divided by n:"),
+    ("least_squares", f"{LINES}return theta, np.sqrt(np.diag(C) * (r @ r) / (len(y) - 2))", "n - 2"),
+    ("least_squares", f"{LINES}return theta, np.diag(C) * {LEFT}", "variances, squares"),
+    ("least_squares", f"{LINES}return theta, np.sqrt({LEFT} / np.diag(A.T @ A))", "right angles"),
+    ("least_squares", f"{LINES}return theta, np.sqrt(np.diag(C))", "do not depend on the noise"),
+    ("least_squares", f"{LINES}return theta, C * {LEFT}", "a whole table"),
+    ("least_squares", f"{LINES}return theta, np.sqrt(np.diag(C) * {LEFT}) / abs(theta)", "shares of theta"),
     ("least_squares", f"{LINES}return theta", "2 results"),
     ("least_squares", f"{LINES}return np.sqrt(np.diag(C) * {LEFT}), theta", "changed places"),
     ("regressor", of_rows(WEIGHTS.replace("c2\n", "np.sin(q[1])\n")), "row 2, column 3"),
+    ("regressor", of_rows(WEIGHTS.replace("9.81 * ", "")), "not yet a weight"),
+    ("regressor", of_rows(WEIGHTS.replace("9.81", "-9.81")), "wrong sign"),
+    ("regressor", of_rows(WEIGHTS.replace("c23", "np.cos(q[2])")), "leans with it"),
+    ("regressor", of_rows(WEIGHTS.replace("Y[1, 3] = 9.81 * c23", "Y[1, 3] = 0")), "carries the forearm as well"),
+    ("regressor", of_rows(friction=FRICTION.replace("direction[j]", "np.sign(qd[j])")), "direction that came in"),
     ("regressor", of_rows(friction=FRICTION.replace("qd[j], direction[j]", "direction[j], qd[j]")), "other way round"),
+    ("regressor", of_rows(friction=FRICTION.replace("Y[j", "Y[:")), "all joints"),
+    ("regressor", of_rows(friction=FRICTION.replace("2 * j", "j")), "move on by one"),
+    ("regressor", of_rows().replace("body_columns(q, qd, qdd)", "np.zeros((3, 20))"), "you start another"),
+    ("rls_step", of_gain(theta="theta + K * y"), "uses y itself"),
+    ("rls_step", of_gain(theta="theta + K * (phi @ theta - y)"), "wrong sign"),
     ("rls_step", of_gain(theta="theta + K * (-phi @ theta - y)"), "as \\(2.40\\) prints"),
+    ("rls_step", of_gain("P @ phi / (1 + phi @ P @ phi)"), "while nothing is forgotten"),
+    ("rls_step", of_gain("P @ phi"), "divided by one number"),
     ("rls_step", of_gain(P="0 * P"), "P is not|P stays|theta is right"),
+    ("rls_step", of_gain(P="np.diag(K * (phi @ P))"), "off its diagonal"),
+    ("rls_step", of_gain().replace("/ forgetting", "* forgetting").replace("P) * f", "P) * f"), "less sure"),
     ("rls_step", of_gain().replace("theta = theta + ", "theta += "), "changes what it was given"),
+    ("rls_step", of_gain("P @ phi / (forgetting + phi @ np.linalg.inv(P) @ phi)"), "as \\(2.44\\) prints"),
+    (
+        "fit_percent",
+        f"return 100 * (1 - {MISSED}**2 / np.sum((measured - measured.mean())**2))",
+        "share of the variance",
+    ),
     ("fit_percent", "return 100 * (1 - np.var(measured - predicted) / np.var(measured))", "share of the variance"),
+    ("fit_percent", "return 100 * (1 - np.std(measured - predicted) / np.std(measured))", "3 counts too high"),
+    ("fit_percent", f"return 100 * (1 - {MISSED} / np.linalg.norm(measured))", "measured from 0"),
     ("fit_percent", f"return 100 * (1 - {MISSED} / np.std(measured))", "both have to be the same"),
-    ("computed_torque", law("qdd - kd * (rate - qd) - kp * (place - q)"), "both errors have the wrong sign"),
-    ("computed_torque", law(u="model(q, qd, 0.01 * v)"), ""),
-    ("computed_torque", law("qdd + kd @ (rate - qd) + kp @ (place - q)"), ""),
-    ("computed_torque", "e = reference[0]\n    e -= q\n    return model(q, qd, reference[2] + kp * e)", ""),
-    ("adaptive_step", "return theta - dt * gain * (Y.T @ s)", "the s of its own joint"),
-    ("adaptive_step", "return theta - dt * gain * Y * s", "\\(3, *20\\)"),
-    ("adaptive_step", "theta -= dt * gain * Y * s[:, None]\n    return theta", "changes what it was given"),
-    ("adaptive_step", "return theta * (1 - dt * gain * Y * s[:, None])", ""),
+    ("fit_percent", f"return 1 - {MISSED} / np.linalg.norm(measured - measured.mean())", "a share, from 0 to 1"),
+    ("fit_percent", f"return 100 * {MISSED} / np.linalg.norm(measured - measured.mean())", "what is missed"),
+    ("fit_percent", f"return 100 - {MISSED} / np.linalg.norm(measured - measured.mean())", "turn it into percent"),
+    ("fit_percent", "return 100 * (1 - np.mean(np.abs((measured - predicted) / measured)))", "by the value itself"),
+    (
+        "fit_percent",
+        f"return 100 * (1 - {MISSED} / np.linalg.norm(predicted - predicted.mean()))",
+        "scatters|not finite",
+    ),
 ]
 
 
@@ -70,6 +89,7 @@ def test_a_wrong_answer_is_told_by_its_symptom(capsys, name, body, words):
 ROUTES = [
     ("least_squares", f"{LINES}return theta, np.sqrt(np.diag(C) * {LEFT})"),
     ("least_squares", f"{LINES}return np.linalg.lstsq(A, y, rcond=None)[0], np.sqrt(np.diag(C) * {LEFT})"),
+    ("regressor", of_rows()),
     ("rls_step", of_gain()),
     (
         "rls_step",
@@ -77,10 +97,6 @@ ROUTES = [
         "    return theta + P @ phi * (y - phi @ theta), P",
     ),
     ("fit_percent", f"return 100 - 100 * {MISSED} / np.linalg.norm(measured - measured.mean())"),
-    ("computed_torque", law("qdd - kd * (qd - rate) - kp * (q - place)")),
-    ("computed_torque", MATRIX),
-    ("adaptive_step", ROWS),
-    ("adaptive_step", "return theta - dt * (gain * (np.diag(s) @ Y))"),
 ]
 
 
