@@ -2,7 +2,7 @@
 
     python3 -m ir50p_lab test --everywhere              every leg; one that passed is not run again
     python3 -m ir50p_lab test --everywhere nehalem      one leg (further arguments go to pytest)
-    python3 -m ir50p_lab test --everywhere --turn       the notebooks of one leg, another one for each commit
+    python3 -m ir50p_lab test --everywhere --turn       the written notebooks of one leg, another one for each commit
 
 What passed is remembered in .everywhere/ and forgotten when any file that the legs read changes.
 """
@@ -21,7 +21,7 @@ PARALLEL = ("-n", str(os.cpu_count() + 1), "--dist", "worksteal")  # one more th
 ROOT = Path(__file__).parents[1]
 STATE = ROOT / ".everywhere"
 READ = ("ir50p_lab", "tests", "notebooks", "data", "pyproject.toml", "environment-test.txt")
-ONCE = ("--both-ways", "-k", "not in_a_chain")  # each notebook once: what it hands on does not depend on the processor
+ONCE = ("--all", "-k", "not in_a_chain")  # each notebook once: what it hands on does not depend on the processor
 SOURCES = {".py", ".ipynb", ".js", ".ino", ".h", ".toml", ".txt", ".csv", ".json", ".npz", ".jpg", ".png"}
 
 
@@ -109,7 +109,7 @@ def main(arguments):
         name = names[int(commit, 16) % len(names)]
         print(f"The notebooks, leg '{name}'", flush=True)
         rest = [argument for argument in arguments if argument != "--turn"]
-        return run(name, known[name], ["-m", "notebook", *ONCE, *rest])["code"]
+        return run(name, known[name], ["-m", "notebook", *rest])["code"]
     chosen = [argument for argument in arguments if argument in known]
     further = [argument for argument in arguments if argument not in known]
     memory = STATE / "passed.json"

@@ -19,13 +19,15 @@ def notebook(path):
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config, items):
-    """Each notebook runs once: in the chain, or with solutions, or else as it is. `--both-ways`: with solutions, too."""
+    """Each notebook runs once: with solutions, or else as it is. `--all`: as it is, too, or in the chain."""
     names = {item.name for item in items}
     double = set()
     if "test_notebooks_in_a_chain" in names:  # a home of its own it has where the chain is left out
         double |= {f"test_notebook[{path.stem}]" for path in CHAIN}
-    if not config.option.both_ways:
+    if not config.option.all:
         solved = {number for number in REWRITTEN if f"test_notebook_with_solutions[{number}]" in names}
         double |= {f"test_notebook[{path.stem}]" for path in NOTEBOOKS if path.name[:2] in solved}
+        if solved >= {path.name[:2] for path in CHAIN}:
+            double.add("test_notebooks_in_a_chain")
     config.hook.pytest_deselected(items=[item for item in items if item.name in double])
     items[:] = [item for item in items if item.name not in double]

@@ -15,7 +15,7 @@ MARKS = {
     "bench/test_stopped_process.py": "timing emulator",
     "benchmarks": "slow",
     "benchmarks/test_bench_speed.py": "timing",
-    "browser": "slow",
+    "browser": "browser slow",
     "controllers/test_computed_torque.py": "numeric",
     "controllers/test_identified_model.py": "numeric",
     "course/at_the_bench/test_bench_panel.py": "timing",

@@ -148,11 +148,15 @@ class Task:
     result: int | None = None  # which of several results it is about, in a trial of one alone
 
     def __post_init__(self):
-        """Take the names of the arguments from the right answer; further options are the course's own affair."""
+        """Take the names of the arguments from the right answer, and keep the cases once they are made.
+
+        Further options of the right answer are the course's own affair.
+        """
         found = inspect.signature(self.reference).parameters.values()
         names = tuple(one.name for one in found if one.kind != one.VAR_KEYWORD)
         object.__setattr__(self, "signature", self.signature or names)
         object.__setattr__(self, "function", self.name.partition(".")[0])
+        object.__setattr__(self, "cases", self.cases and cache(self.cases))  # some draw pictures
 
     @property
     def function_arguments(self):

@@ -42,8 +42,7 @@ def judged(hand_in_of, arms=3, *, seeds=None, seconds=SECONDS):
     seeds = seeds or [secrets.randbits(128) for _ in range(whole("arms", arms, 1, 1000))]
     with TemporaryDirectory() as room, ThreadPoolExecutor(os.cpu_count()) as pool:
         folder = _moved_in(path, Path(room))
-        words = [*shut_in, "--ro-bind", room, room] if (shut_in := sandbox.bubblewrap()) else []
-        races = pool.map(partial(_race, folder, words, seconds), seeds)
+        races = pool.map(partial(_race, folder, sandbox.bubblewrap(room), seconds), seeds)
         found = lent(path.read_text(encoding="utf-8", errors="replace"), folder)
         return RaceDay(tuple(tqdm(races, total=len(seeds), desc="arms")), found)
 

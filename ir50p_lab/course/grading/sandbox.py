@@ -10,9 +10,11 @@ import sys
 from pathlib import Path
 
 from ir50p_lab.home import PROJECT, VARIABLE
+from ir50p_lab.jit import cache_folder
 
 STATES = "right", "wrong", "loan", "open"
 SECONDS = 120  # for one student, by the clock
+_WITH_CACHE = 'mkdir ~/.cache; cp -r "$0" ~/.cache; exec "$@"'  # which an empty home lacks
 ENDED = "its process ended, or did not end in time: an endless loop, or more memory than it may have?"
 
 
@@ -24,16 +26,20 @@ def isolation():
     return f"bubblewrap is not available here: each student's functions run in a process of their own, with {limits}."
 
 
-def bubblewrap():
-    """Return the words that, put before a command, shut it in; [] if bubblewrap is missing or may not work."""
+def bubblewrap(room=PROJECT):
+    """Return the words that, put before a command, shut it in; [] if bubblewrap is missing or may not work.
+
+    It reads all but the user's files, of which it reads this room alone. It has its own copy of the compiled code.
+    """
     program = shutil.which("bwrap")
     if program is None:
         return []
-    shown = {sys.prefix, sys.base_prefix, str(PROJECT), *os.environ.get("PYTHONPATH", "").split(os.pathsep)} - {""}
+    shown = {sys.prefix, sys.base_prefix, str(PROJECT), str(room), *os.environ.get("PYTHONPATH", "").split(os.pathsep)} - {""}
     words = [program, "--ro-bind", "/", "/", "--tmpfs", "/tmp", "--tmpfs", str(Path.home())]
     for path in sorted(map(os.path.realpath, shown)):
         words += ["--ro-bind", path, path]
     words += ["--dev", "/dev", "--proc", "/proc", "--unshare-all", "--die-with-parent", "--new-session"]
+    words += ["sh", "-c", _WITH_CACHE, str(cache_folder())]
     return words if subprocess.run([*words, "true"], capture_output=True, check=False).returncode == 0 else []
 
 
