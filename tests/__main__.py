@@ -1,7 +1,7 @@
 """The test command: ``python3 -m ir50p_lab test``, further arguments go to pytest.
 
 --quick        without notebooks, the emulated board, and what takes long or measures time
---all          as in CI: each notebook with its dots, too, those that hand on results in one home, and pages in a browser
+--all          as in CI: each notebook with its dots, too, and what is marked `ci` (students, pages in a browser)
 --everywhere   notebooks and the tests marked `numeric`, as on other processors and other arms: tests/everywhere.py
 """
 

@@ -25,7 +25,7 @@ def students_folder(tmp_path_factory):
 
 def pytest_addoption(parser):
     parser.addoption("--quick", action="store_true", help="without notebooks, the emulated board, and what takes long")
-    parser.addoption("--all", action="store_true", help="notebooks with their dots, too, and pages in a browser")
+    parser.addoption("--all", action="store_true", help="notebooks with their dots, too, and what is marked `ci`")
     parser.addoption("--timing", choices=("only", "without"), help="only tests that measure time, or all others")
 
 
@@ -35,7 +35,7 @@ def pytest_collection_modifyitems(config, items):
         for mark in _marks_of(item.path):
             item.add_marker(mark)
     option = config.option
-    option.browser = option.all or any("browser" in argument for argument in config.args)  # or by its name
+    option.ci = option.all or option.keyword or config.args != config.getini("testpaths")  # or by its name
     kept = [item for item in items if _is_asked_for(item, option)]
     chosen = set(kept)
     config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
@@ -53,7 +53,7 @@ def _is_asked_for(item, option):
     marks = {mark.name for mark in item.iter_markers()}
     if option.quick and marks & {"notebook", "emulator", "slow", "timing"}:
         return False
-    if "browser" in marks and not option.browser:
+    if "ci" in marks and not option.ci:
         return False
     return option.timing is None or (option.timing == "only") == ("timing" in marks)
 

@@ -2,6 +2,7 @@
 
 import ast
 import collections
+import functools
 import graphlib
 import re
 import sys
@@ -50,6 +51,7 @@ SUBJECTS_TOO = {
 }
 
 
+@functools.cache
 def modules():
     """{dotted name: syntax tree}."""
     found = {}

@@ -27,7 +27,5 @@ def pytest_collection_modifyitems(config, items):
     if not config.option.all:
         solved = {number for number in REWRITTEN if f"test_notebook_with_solutions[{number}]" in names}
         double |= {f"test_notebook[{path.stem}]" for path in NOTEBOOKS if path.name[:2] in solved}
-        if solved >= {path.name[:2] for path in CHAIN}:
-            double.add("test_notebooks_in_a_chain")
     config.hook.pytest_deselected(items=[item for item in items if item.name in double])
     items[:] = [item for item in items if item.name not in double]

@@ -37,6 +37,7 @@ def assert_runs(path, notebook, home):
 
 
 @pytest.mark.notebook
+@pytest.mark.ci
 def test_notebooks_in_a_chain(tmp_path):
     """In order, with one home: what a notebook keeps there is what later ones load. In a home of their own: conftest.py."""
     for path in CHAIN:

@@ -244,12 +244,14 @@ def test_the_example_shown_is_one_where_the_mistake_named_happens(name, monkeypa
     monkeypatch.setattr(grading, "distortions", lambda task: ())
     known, one = task(name).mistakes, dataclasses.replace(task(name), mistakes=())
     cases, shown = one.cases(), 0
+    beginnings = [case_in_words(one, case) + "\n" for case in cases]
+    right = [one.reference(*case) for case in cases]
     for mistake in known:
         verdict = grading.grade(one, mistake.function)
         returned = [call(one, mistake.function, case) for case in cases]
-        answers = {k: (case, returned[k], one.reference(*case)) for k, case in enumerate(cases)}
+        answers = {k: (case, returned[k], right[k]) for k, case in enumerate(cases)}
         answers = {k: answer for k, answer in answers.items() if not one.agrees(*answer[1:])}
-        there = [k for k, case in enumerate(cases) if verdict.example.startswith(case_in_words(one, case) + "\n")]
+        there = [k for k, words in enumerate(beginnings) if verdict.example.startswith(words)]
         shown += bool(there)
         assert not there or any(k in answers for k in there)
         if there and one.symptom and not verdict.says.startswith("it stops"):

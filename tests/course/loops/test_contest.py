@@ -143,7 +143,7 @@ def test_compiled_and_python_give_one_score():
 def test_the_rule_of_09_has_the_margins_that_skogestad_gives():
     for T, L in ((1.0, 0.1), (0.5, 0.5), (0.1, 2.0)):
         kp, ki, kd = rule(4.0, T, L, L)
-        w = np.geomspace(1e-2, 60, 20_000) / L
+        w = np.geomspace(1e-2, 60, 2_000) / L
         s = 1j * w
         loop = (kp + ki / s + kd * s) * 4.0 * np.exp(-s * L) / (T * s + 1) / s
         assert control.stability_margins(control.frd(loop, w))[:2] == pytest.approx((2.96, 46.9), rel=3e-3)
