@@ -3,7 +3,7 @@
     run = broken("A")
     name_it("A", "windup")
 
-Simulated, on the arm of the course; case C on the thesis's own arm, because it is about that arm's gains.
+Simulated, on the arm of the course; loop C on the thesis's own arm, because it is about that arm's gains.
 """
 
 import tomllib
