@@ -1,4 +1,4 @@
-"""Which files and folders are timed, are slow, need the emulated board, or rest on numerics of this processor."""
+"""Which files and folders are timed, slow, or of CI alone, need the emulated board, or rest on this processor."""
 
 from pathlib import Path
 
@@ -47,5 +47,5 @@ MARKS = {
     "vision/test_reaching.py": "slow",
     "vision/test_rendering.py": "slow",
     "vision/test_table_plane.py": "numeric",
-    "vision/test_vision_times.py": "timing slow",
+    "vision/test_vision_times.py": "ci timing slow",
 }
