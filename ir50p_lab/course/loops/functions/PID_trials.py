@@ -70,7 +70,7 @@ def _one_step(pid, t, q, reference):
     given = q.copy(), reference.copy()
     command = call_or_fail(lambda: pid.step(t, *given), what)
     for name, now, before in zip(("q", "the reference"), given, (q, reference), strict=True):
-        if not np.array_equal(now, before):
+        if now.tobytes() != before.tobytes():  # quicker than by their numbers
             raise Failed(_SAYS["changes"].format(name), what())
     kind = "nothing" if command is None else f"shape {np.shape(command)}"
     if says := _SAYS.get(kind) or no_numbers(command, np.zeros(3)):
