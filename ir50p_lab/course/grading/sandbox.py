@@ -34,7 +34,8 @@ def bubblewrap(room=PROJECT):
     program = shutil.which("bwrap")
     if program is None:
         return []
-    shown = {sys.prefix, sys.base_prefix, str(PROJECT), str(room), *os.environ.get("PYTHONPATH", "").split(os.pathsep)} - {""}
+    paths = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    shown = {sys.prefix, sys.base_prefix, str(PROJECT), str(room), *paths} - {""}
     words = [program, "--ro-bind", "/", "/", "--tmpfs", "/tmp", "--tmpfs", str(Path.home())]
     for path in sorted(map(os.path.realpath, shown)):
         words += ["--ro-bind", path, path]
