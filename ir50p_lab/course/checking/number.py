@@ -35,7 +35,6 @@ class Number:
     why: one line, shown for a right answer.
     mistakes: {what to say: a typical wrong answer, or a function of the right one (np.negative)}.
     unit: of the numbers, "rad", "m", "N m"; "" for none or several.
-    angle: whether the entries are angles in rad, equal modulo 2 pi.
     hint: shown for a wrong answer that is not a known mistake.
     """
 
@@ -48,7 +47,6 @@ class Number:
     mistakes: dict
     unit: str = ""
     because: str = "it allows for rounding"
-    angle: bool = False
     hint: str = ""
 
     def __post_init__(self):
@@ -68,10 +66,7 @@ class Number:
 
     def near(self, found, target, tolerance):
         """Return for each entry whether it is within the tolerance of that of the target."""
-        off = np.subtract(found, target)
-        if self.angle:
-            off = (off + np.pi) % (2 * np.pi) - np.pi
-        return np.abs(off) <= tolerance
+        return np.abs(np.subtract(found, target)) <= tolerance
 
 
 def shape_in_words(shape):

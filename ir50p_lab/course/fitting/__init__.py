@@ -18,7 +18,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
             "parts_of_push",
             "table_figure",
         ],
-        "results": ["CutoffView", "ablation_figure", "whiteness_figure"],
-        "views": ["FeedbackLoop", "FeedbackView", "kept_motion", "two_copies"],
+        "results": ["ablation_figure", "whiteness_figure"],
+        "views": ["FeedbackLoop", "kept_motion", "two_copies"],
     },
 )

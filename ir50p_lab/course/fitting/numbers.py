@@ -1,32 +1,8 @@
-"""Numbers of notebook 12: a step of recursive least squares, what a clamped joint hides."""
+"""Number of notebook 12: what a clamped joint hides."""
 
 from ir50p_lab.course.checking.number import Number
 
-# ident-1: one parameter, one sample.
-_THETA, _P, _PHI, _Y = 2.0, 0.5, 3.0, 9.0
-_GAIN = _P * _PHI / (1 + _PHI * _P * _PHI)
-_STEP = _THETA + _GAIN * (_Y - _PHI * _THETA)
-
-
 NUMBERS = (
-    Number(
-        "ident-1",
-        "12_identification",
-        "the estimate after one step of recursive least squares from theta = 2, P = 0.5, with phi = 3 and y = 9",
-        _STEP,
-        tolerance=2e-3,
-        why="One sample explains most of itself: the new estimate predicts 8.45 where 9 was measured.",
-        mistakes={
-            "That has the inverse of P inside the bracket, as (2.44) is printed.": (
-                _THETA + _P * _PHI / (1 + _PHI / _P * _PHI) * (_Y - _PHI * _THETA)
-            ),
-            "That is the first line of (2.40) as printed: the measurement enters with a plus.": (
-                _THETA - _GAIN * _PHI * _THETA - _GAIN * _Y
-            ),
-            "That steps with the old P; the gain divides by 1 + phi P phi.": _THETA + _P * _PHI * (_Y - _PHI * _THETA),
-            "The step is by the prediction error y - phi theta, not by y.": _THETA + _GAIN * _Y,
-        },
-    ),
     Number(
         "ident-2",
         "12_identification",

@@ -5,7 +5,6 @@ from functools import lru_cache
 import numpy as np
 
 from ir50p_lab.bench import SimulatedBench
-from ir50p_lab.course.draw.style import COLOURS, SETPOINT, new_figure
 from ir50p_lab.identification import load_excitations, optimise_excitation
 from ir50p_lab.modelling import IR50P
 
@@ -51,36 +50,6 @@ class FeedbackLoop:
         r, v = excitation * self._r, 0.1 * self._v
         u = self.K * (r - v) / (1 + self.b * self.K)
         return r, u, self.b * u + v
-
-
-class FeedbackView:
-    """The cloud (u, y) of a FeedbackLoop with its least-squares line. Attributes: figure."""
-
-    def __init__(self, loop, largest):
-        self.loop, self.figure = loop, new_figure(7.2, 4.0)
-        ax = self.figure.axes[0]
-        _, u, y = loop.run(largest)
-        self._ends = 1.05 * np.abs(u).max() * np.array([-1, 1])
-        (self._cloud,) = ax.plot([], [], ".", ms=4, color=COLOURS["grey"])
-        ax.plot(self._ends, loop.b * self._ends, **SETPOINT)
-        ax.plot(self._ends, -self._ends / loop.K, ":", color=COLOURS["green"])
-        (self._line,) = ax.plot([], [], color=COLOURS["orange"], lw=2.5)
-        height = 1.1 * np.abs(y).max()
-        ax.set(xlim=self._ends, ylim=(-height, height), xlabel="command u [PWM]", ylabel="speed y [rad/s]")
-        ax.set_title("Orange: least squares; little excitation: it finds the controller", fontsize=11)
-        # texts, for a legend would be drawn anew at every step of the slider
-        left = 0.97 * self._ends[0]
-        ax.text(left, 0.85 * height, "dashed: the plant, slope b", color=COLOURS["dark"], fontsize=9)
-        ax.text(left, 0.70 * height, "dotted: the controller, slope -1/K", color=COLOURS["green"], fontsize=9)
-
-    def update(self, excitation):
-        """Draw for a set point of the rms `excitation` (rad/s). Returns the slopes in words."""
-        r, u, y = self.loop.run(excitation)
-        slope = (u @ y) / (u @ u)
-        self._cloud.set_data(u, y)
-        self._line.set_data(self._ends, slope * self._ends)
-        by_instrument = f"; with r as instrument {(r @ y) / (r @ u):.4f}" if excitation > 0 else ""
-        return f"least squares {slope:.4f}, true b = {self.loop.b:.4f} rad/s per count{by_instrument}"
 
 
 @lru_cache(maxsize=20)

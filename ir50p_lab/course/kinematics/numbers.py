@@ -1,12 +1,9 @@
-"""Numbers of notebooks 01, 03 and A2: a pose from the other side, a velocity of the tip, a singular orientation."""
+"""Numbers of notebooks 01 and 03: a pose from the other side, a velocity of the tip."""
 
 import numpy as np
 
 from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P, jacobian, rot_z
-
-# pose-2: at the singular middle angle +90 degrees of the sequence XYZ, R depends on the sum of the outer angles.
-_FIRST, _THIRD = np.deg2rad([20, 35])
 
 # pose-3: frame {B} stands at t in {A}, turned by 90 degrees about z.
 _T = np.array([0.3, 0.1, 0.2])
@@ -57,22 +54,5 @@ NUMBERS = (
             "That is how fast the hand turns (rows 4 to 6), not how fast it moves.": jacobian(IR50P, _Q)[3:] @ _QD,
         },
         hint="Those are the joint speeds; multiply the upper three rows of jacobian(T, 3, tip) with them.",
-    ),
-    Number(
-        "pose-2",
-        "A2_further_on",
-        "the first angle, in rad, of the XYZ angles (first, 90 degrees, 0) that give the same rotation as "
-        "(20, 90, 35) degrees",
-        _FIRST + _THIRD,
-        unit="rad",
-        tolerance=1e-3,
-        angle=True,
-        why="At +90 degrees only the sum of the outer angles matters; at -90 degrees it is their difference.",
-        mistakes={
-            "That is the difference, which counts at -90 degrees; try it in the matrix.": _FIRST - _THIRD,
-            "The third turn got lost: without it the rotation is another one.": _FIRST,
-            "That is the third turn alone; the first one is still there.": _THIRD,
-        },
-        hint="Multiply the three matrices for a middle angle of 90 degrees and look at what the entries depend on.",
     ),
 )

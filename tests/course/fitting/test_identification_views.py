@@ -9,9 +9,7 @@ import pytest
 from ir50p_lab.bench import ArmInstance, SimulatedBench
 from ir50p_lab.controllers import PID
 from ir50p_lab.course import fitting
-from ir50p_lab.course.draw.painter import Painter
-from ir50p_lab.course.fitting import results, views
-from ir50p_lab.errors import InputError
+from ir50p_lab.course.fitting import views
 from ir50p_lab.identification import fit, load_excitations, process, regressor
 from ir50p_lab.modelling import IR50P, gravity, mass_matrix
 from ir50p_lab.signals import quintic
@@ -19,21 +17,6 @@ from ir50p_lab.signals import quintic
 pytestmark = pytest.mark.numeric
 PID_TABLES = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30), "limit_pwm": 255}
 POSE = np.array([0, 0.7, -0.8])
-
-
-@pytest.fixture(scope="module")
-def excitation():
-    return views.kept_motion(IR50P)
-
-
-def recorded(excitation, seconds, arm=IR50P, seed=0):
-    bench = SimulatedBench(arm, seed=seed, unit=ArmInstance(spread=0), q0=excitation.q_start, record_to=False).open()
-    return bench.follow(PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf), excitation, seconds)
-
-
-@pytest.fixture(scope="module")
-def records(excitation):
-    return recorded(excitation, 40), recorded(excitation, 30, seed=1)
 
 
 # ---- feedback
@@ -50,16 +33,6 @@ def test_bias_of_least_squares_in_closed_loop(excitation):
     u = 300 * (sampled[0] - sampled[1]) / (1 + 0.01 * 300)
     y = 0.01 * u + sampled[1]
     assert (u @ y) / (u @ u) == pytest.approx(expected, abs=2e-4)
-
-
-def test_feedback_view_says_both_slopes():
-    loop = views.FeedbackLoop(b=0.01, K=300)
-    view = views.FeedbackView(loop, 0.5)
-    before = Painter(view.figure).png()
-    assert "0.0100" in view.update(0.5) and "instrument" not in view.update(0)
-    assert Painter(view.figure).png() != before
-    line = view.figure.axes[0].lines[-1]
-    assert np.diff(line.get_ydata())[0] / np.diff(line.get_xdata())[0] == pytest.approx(-1 / 300)
 
 
 def test_two_copies():
@@ -106,20 +79,13 @@ def test_the_arm_of_the_course_has_kept_motions_another_one_gets_its_own(monkeyp
 # ---- results
 
 
-def test_cutoff_view(records):
-    view = results.CutoffView(*records, [0.7, 1.5, 4.0], delay=0.02, span=(10, 14))
-    assert view.fits["zero-phase"].shape == (3, 3)
-    said = view.update(1.5)
-    assert f"zero-phase: fit {view.fits['zero-phase'][1, 0]:.0f}" in said
-    assert [1.5, 1.5] in [list(line.get_xdata()) for line in view.figure.axes[1].lines]
-    with pytest.raises(InputError):
-        view.update(60.0)
-
-
-def test_rows_of_a_recording_are_those_of_the_package(records):
-    Y, u, use = fitting.columns(records[0])
+def test_rows_of_a_recording_are_those_of_the_package():
+    excitation, unit = views.kept_motion(IR50P), ArmInstance(spread=0)
+    bench = SimulatedBench(IR50P, seed=0, unit=unit, q0=excitation.q_start, record_to=False).open()
+    record = bench.follow(PID(**PID_TABLES, position_filter_hz=3, filter_hz=np.inf), excitation, 40)
+    Y, u, use = fitting.columns(record)
     theta, errors = fitting.fit_rows(Y, u, use)
-    motion = process(records[0], delay=0.02, slow=0.05)
+    motion = process(record, delay=0.02, slow=0.05)
     theirs = fit(regressor(motion.q, motion.qd, motion.qdd), motion.u, use=motion.use)
     waist = fitting.ACTS[0]
     np.testing.assert_allclose(theta[0, waist], theirs.theta[0, waist], atol=1e-6)
