@@ -14,7 +14,6 @@ from ir50p_lab.course.checking.numbers import everything, find, grade_number
 from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, forward_kinematics, inverse_dynamics
 from ir50p_lab.signals import hold, low_pass, quintic
 from ir50p_lab.simulation import simulate
-from ir50p_lab.vision import Pinhole
 
 ALL = everything()
 
@@ -124,12 +123,6 @@ def sag():
     return e
 
 
-def radius_in_pixels():
-    """By projection."""
-    middle, rim = Pinhole.simple(700.0).project(np.eye(4), np.array([(0, 0, 0.80), (0.030, 0, 0.80)]))
-    return np.linalg.norm(rim - middle)
-
-
 def read_too_far():
     """A line from the lens through the ball meets the table; (along the table, height)."""
     lens, ball = np.array([0.0, 0.6]), np.array([0.5, 0.03])
@@ -169,7 +162,6 @@ ROUTES = {
     "bench-4": lag,
     "ident-1": step_of_least_squares,
     "ct-3": sag,
-    "image-4": radius_in_pixels,
     "calib-4": read_too_far,
     "reach-3": one_count,
 }
