@@ -11,7 +11,7 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID, ContinuousPID
 from ir50p_lab.course import solution
 from ir50p_lab.course.checking.numbers import everything, find, grade_number
-from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, forward_kinematics, inverse_dynamics
+from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, inverse_dynamics
 from ir50p_lab.signals import hold, low_pass, quintic
 from ir50p_lab.simulation import simulate
 
@@ -129,12 +129,6 @@ def read_too_far():
     return (lens + (ball - lens) * lens[1] / (lens[1] - ball[1]))[0] - 0.5
 
 
-def one_count():
-    """The arm moves by a hundredth of a count."""
-    q, step = np.array([0.0, 0.5, -1.4]), np.array([0, 0.01 / 122, 0])
-    return 1e5 * np.linalg.norm(forward_kinematics(IR50P, q + step) - forward_kinematics(IR50P, q))
-
-
 def quickest_gear():
     """Every gear is tried."""
     gears = np.linspace(1, 300, 299_001)
@@ -163,7 +157,6 @@ ROUTES = {
     "ident-1": step_of_least_squares,
     "ct-3": sag,
     "calib-4": read_too_far,
-    "reach-3": one_count,
 }
 BY_TESTS = {"sim-2", "pid-3", "bench-5", "ident-2", "ct-4"}  # below
 
