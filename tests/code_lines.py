@@ -31,17 +31,17 @@ FOLDERS = {  # their budgets are the design's; nobody raises one
     "root": 230,
 }
 BUDGETS = FOLDERS | {"all": 17_719, "tests": 20_000, "sentences": 2_800}
-#: What was over its budget on 29 November 2026. A figure here only falls: set it to what is left after each cut.
+#: What was over its budget on 30 November 2026. A figure here only falls: set it to what is left after each cut.
 STILL = {
     "bench": 2384,
     "identification": 1486,
     "vision": 2282,
-    "course": 8986,
+    "course": 8870,
     "course/publishing": 698,
     "launcher": 613,
     "root": 359,
-    "all": 19_570,
-    "tests": 20_341,
+    "all": 19_432,
+    "tests": 20_287,
 }
 _NO_CODE = {
     tokenize.COMMENT,

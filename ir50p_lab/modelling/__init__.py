@@ -16,7 +16,7 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "export": ["export_arm"],
         "friction": ["Friction", "friction_torque"],
         "ik": ["inverse_kinematics", "reachability"],
-        "inertia": ["cylinder", "integrate_solid", "second_moment_tensor"],
+        "inertia": ["second_moment_tensor"],
         "named_arms": ["IR50P", "IR50P_WEAK_SHOULDER", "THESIS_A", "THESIS_C", "THESIS_RODS", "load_arm"],
         "symbolic": ["derive", "same_function"],
         "pose": ["rot_x", "rot_y", "rot_z"],

@@ -11,10 +11,9 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID, ContinuousPID
 from ir50p_lab.course import solution
 from ir50p_lab.course.checking.numbers import everything, find, grade_number
-from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, forward_kinematics, inverse_dynamics
+from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, inverse_dynamics
 from ir50p_lab.signals import hold, low_pass, quintic
 from ir50p_lab.simulation import simulate
-from ir50p_lab.vision import Pinhole
 
 ALL = everything()
 
@@ -119,22 +118,10 @@ def sag():
     return e
 
 
-def radius_in_pixels():
-    """By projection."""
-    middle, rim = Pinhole.simple(700.0).project(np.eye(4), np.array([(0, 0, 0.80), (0.030, 0, 0.80)]))
-    return np.linalg.norm(rim - middle)
-
-
 def read_too_far():
     """A line from the lens through the ball meets the table; (along the table, height)."""
     lens, ball = np.array([0.0, 0.6]), np.array([0.5, 0.03])
     return (lens + (ball - lens) * lens[1] / (lens[1] - ball[1]))[0] - 0.5
-
-
-def one_count():
-    """The arm moves by a hundredth of a count."""
-    q, step = np.array([0.0, 0.5, -1.4]), np.array([0, 0.01 / 122, 0])
-    return 1e5 * np.linalg.norm(forward_kinematics(IR50P, q + step) - forward_kinematics(IR50P, q))
 
 
 def quickest_gear():
@@ -162,9 +149,7 @@ ROUTES = {
     "pid-1": remaining_errors,
     "bench-4": lag,
     "ct-3": sag,
-    "image-4": radius_in_pixels,
     "calib-4": read_too_far,
-    "reach-3": one_count,
 }
 BY_TESTS = {"sim-2", "bench-5", "ident-2"}  # below
 

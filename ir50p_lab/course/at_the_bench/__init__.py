@@ -6,6 +6,5 @@ __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
         "panel": ["live_panel"],
-        "views": ["replay_figure"],
     },
 )

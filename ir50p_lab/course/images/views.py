@@ -1,4 +1,4 @@
-"""Figures of notebook 16: pictures, a picture as numbers, edge pixels that vote, a bench whose ball is moved."""
+"""Figures of notebook 16: pictures, edge pixels that vote, a bench whose ball is moved."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from ir50p_lab.course.lab_book.data_file import data_file
 from ir50p_lab.errors import InputError
 from ir50p_lab.vision.image import load_image
 
-__all__ = ["bench_pictures", "bench_with_ball", "numbers_figure", "pictures_figure", "votes_figure"]
+__all__ = ["bench_pictures", "bench_with_ball", "pictures_figure", "votes_figure"]
 
 _FILES = {"red": "bench_16", "blue": "bench_16_blue"}
 _EVERY = 7  # one edge pixel in so many is drawn
@@ -22,21 +22,6 @@ def bench_pictures(colour):
     if colour not in _FILES:
         raise InputError(f'bench_pictures({colour!r}): there is a bench in "red" and one in "blue"')
     return tuple(load_image(data_file(f"{_FILES[colour]}{which}.jpg")) for which in ("", "_dim", "_empty"))
-
-
-def numbers_figure(grey, x, y):
-    """Draw nine rows and columns of a grey picture (h, w), from pixel (x, y), as numbers (Figure 3.1).
-
-    Returns: LabFigure.
-    """
-    part = np.round(grey[y : y + 9, x : x + 9]).astype(int)
-    figure, ax = subplots(4.6, 4.4, note=STAMP)
-    show_picture(ax, part, extent=(x - 0.5, x + 8.5, y + 8.5, y - 0.5))
-    for (row, column), level in np.ndenumerate(part):
-        ink = "white" if level < 128 else "black"
-        ax.text(x + column, y + row, level, ha="center", va="center", color=ink, fontsize=8)
-    ax.set(xlabel="x [px]", ylabel="y [px]")
-    return figure
 
 
 def votes_figure(picture, edges, radius, votes):

@@ -5,7 +5,7 @@ from ir50p_lab import lazy
 __getattr__, __dir__, __all__ = lazy.attach(
     __name__,
     submod_attrs={
-        "frame_walk": ["arm_by_table", "chain", "two_views", "walk"],
+        "frame_walk": ["arm_by_table", "chain", "walk"],
         "self_collision": ["through_column"],
     },
 )

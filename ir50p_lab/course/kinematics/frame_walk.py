@@ -1,9 +1,9 @@
-"""Pictures of notebook 01: a frame that walks up the arm motion by motion, an arm from a table, two arms compared."""
+"""Pictures of notebook 01: a frame that walks up the arm motion by motion, an arm from a table."""
 
 import numpy as np
 
 from ir50p_lab.course.draw.arm3d import ArmView, FrameView
-from ir50p_lab.course.draw.style import COLOURS, new_figure
+from ir50p_lab.course.draw.style import new_figure
 from ir50p_lab.modelling.chain import dh_matrix, dh_table
 
 _MOTIONS = ("turn about z", "shift along z", "shift along x", "turn about x")
@@ -52,21 +52,3 @@ def chain(q, table, dh_matrix=dh_matrix):
 def arm_by_table(table, dh_matrix):
     """Return f(q): the frames of the `chain` of this table by this `dh_matrix`."""
     return lambda q: chain(q, table, dh_matrix)
-
-
-def two_views(arms):
-    """Draw arms from above and from the side, one over the other. Returns: LabFigure.
-
-    arms: name -> transforms (n, 4, 4) of its frames, base first.
-    """
-    figure = new_figure(9.6, 4.0, cols=2)
-    for ax, axis, name, title in zip(
-        figure.axes, (1, 2), ("y, to the left", "z, up"), ("from above", "from the right"), strict=True
-    ):
-        for k, (label, T) in enumerate(arms.items()):
-            style = {"linewidth": 7 - 3 * k, "ms": 9 - 2 * k, "mfc": "white", "mew": 2, "solid_capstyle": "round"}
-            ax.plot(T[:, 0, 3], T[:, axis, 3], "-o", color=(COLOURS["sky"], COLOURS["orange"])[k], label=label, **style)
-        ax.set(aspect="equal", adjustable="datalim", xlabel="x, ahead [m]", ylabel=f"{name} [m]", title=title)
-    figure.axes[1].axhline(0, color=COLOURS["grey"], linewidth=1, zorder=0)
-    figure.axes[0].legend(loc="best")
-    return figure

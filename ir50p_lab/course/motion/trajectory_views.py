@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, SETPOINT, subplots
+from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, SETPOINT, subplots
 from ir50p_lab.course.draw.traces import STAMP
 
 
@@ -64,21 +64,3 @@ def honey(M):
     limit = 2.785 / 0.01 / np.max(np.linalg.eigvals(np.linalg.solve(M, np.eye(3))).real)
     digit = 10.0 ** np.floor(np.log10(limit))
     return np.ceil(limit / digit) * digit * np.array([0.125, 0.25, 0.5, 1])
-
-
-def two_paths(t, paths):
-    """Draw heights and speeds of two paths of the arm over t (n,) s. Returns: LabFigure.
-
-    paths: {name: tips (n, 3) m and angles (n, 3) rad}.
-    """
-    figure, plane, ax = subplots(9.6, 3.9, cols=2, note=STAMP)
-    for (name, (tips, q)), style in zip(paths.items(), ("-", ":"), strict=True):
-        plane.plot(np.hypot(tips[:, 0], tips[:, 1]), 1000 * tips[:, 2], style, color=COLOURS["dark"], label=name)
-        for joint, label in enumerate(JOINT_LABELS):
-            ax.plot(t, np.gradient(q[:, joint], t), style, color=JOINTS[joint], label=label if style == "-" else "")
-    plane.axhspan(-10, 0, color=COLOURS["light"])
-    plane.set(xlabel="distance from the column [m]", ylabel="height of the tip [mm]", title="Grey: the table")
-    ax.set(xlabel="time [s]", ylabel="speed [rad/s]", title="What each asks of the joints")
-    plane.legend()
-    ax.legend(fontsize=9)
-    return figure

@@ -17,6 +17,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
             "path",
         ],
         "functions.find_and_reach": ["edges_of", "strongest"],
-        "views": ["looks_figure", "follow_figure"],
+        "views": ["looks_figure"],
     },
 )

@@ -55,12 +55,6 @@ def test_the_votes_are_drawn_and_a_mask_without_edges_is_refused():
         images.votes_figure(bench, images.edges_of(np.zeros(bench.shape[:2], bool)), 25, votes)
 
 
-def test_a_picture_is_shown_as_its_numbers():
-    grey = np.arange(200.0).reshape(10, 20)
-    written = [text.get_text() for text in images.numbers_figure(grey, 5, 1).axes[0].texts]
-    assert written[:9] == [str(number) for number in range(25, 34)] and len(written) == 81
-
-
 def test_the_moved_ball_moves():
     seen = [images.best_circle(mask_of(images.bench_with_ball(IR50P, x, 0.1)), range(8, 17)) for x in (0.3, 0.45)]
     assert all(share > 0.5 for share, _, _ in seen) and seen[0][1] != seen[1][1]

@@ -12,7 +12,6 @@ from ir50p_lab.course.reaching import arms
 from ir50p_lab.errors import NotMeasuredError, VisionError
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.vision import RenderedBench
-from ir50p_lab.vision.reaching.reach_result import FollowLog
 
 BALL = np.array([0.42, -0.15, 0.03])
 
@@ -87,16 +86,3 @@ def test_no_circle_is_no_pixel_and_none_is_no_way():
         views.path(rest_pose(IR50P), None)
     with pytest.raises(VisionError, match="no circle"):
         views.seen_circle(np.zeros((60, 80), dtype=bool), [8, 9])
-
-
-def test_following_shows_how_far_the_tip_is_ahead():
-    t = np.linspace(0, 4, 401)
-    ball, velocity = np.column_stack([0.4 + 0 * t, 0.02 * t]), np.tile([0.0, 0.02], (len(t), 1))
-    velocity[::50] = 0.0  # where it stands there is no ahead
-    tips = [np.column_stack([ball + np.array([0.003, ahead]), 0.1 + 0 * t]) for ahead in (0.005, -0.001)]
-    logs = [FollowLog(t, tip, ball, velocity, lead) for tip, lead in zip(tips, (0.25, 0.0), strict=True)]
-    figure = views.follow_figure(logs, True)
-    text = text_of(figure)
-    assert "lead 0.25 s" in text and "lead 0 s" in text and "lead × speed" in text
-    thick = [line.get_ydata() for line in figure.axes[1].lines if line.get_linewidth() == 2]
-    assert np.allclose(thick[0], 5.0) and np.allclose(thick[1], -1.0)
