@@ -12,7 +12,7 @@ from tests import everywhere
 
 PYTEST = [sys.executable, "-m", "pytest"]
 FAILED, NOTHING_FOUND = 1, 5  # pytest's exit codes
-MINUTES = 35  # of one processor, with compiler and browser, without other work beside it
+MINUTES = 25  # of one processor, with a compiler for the board, without other work beside it
 
 
 def main(arguments):
