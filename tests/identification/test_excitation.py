@@ -13,7 +13,6 @@ from ir50p_lab.modelling import IR50P, Arm, forward_kinematics
 from ir50p_lab.signals import fourier
 from ir50p_lab.signals.fourier import limits_of
 
-pytestmark = pytest.mark.numeric
 OTHER = Arm(name="other", l=(0.5, 0.3, 0.2), m=(1, 1, 1), lc=(0.1, 0.1, 0.1), q_min=(-1, 0, -2), q_max=(2, 1.5, 1))
 QUICK = {"harmonics": 3, "tries": 400, "progress": False}
 COLUMNS = [0, 1, 4, 5, 10, 11, 16], [1, 2, 3, 4, 5, 8, 9, 12, 13, 17], [3, 4, 5, 9, 14, 15, 18, 19]

@@ -13,7 +13,6 @@ from ir50p_lab.vision import Checkerboard, Pinhole, Reason, calibrate, calibrate
 from ir50p_lab.vision.calibration.calibration_result import NAMES
 from ir50p_lab.vision.calibration.fit import errors, fit, fit_bent, heights
 
-pytestmark = pytest.mark.numeric
 POINTS = Checkerboard().points
 TRUTH = np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2]])
 FULL = ("k1", "k2", "p1", "p2")

@@ -14,7 +14,7 @@ from ir50p_lab.jit import cache_folder
 
 STATES = "right", "wrong", "loan", "open"
 SECONDS = 120  # for one student, by the clock
-_WITH_CACHE = 'mkdir ~/.cache; cp -r "$0" ~/.cache; exec "$@"'  # which an empty home lacks
+_WITH_CACHE = 'mkdir ~/.cache; cp -r "$0" ~/.cache; exec "$@"'  # into its empty home
 ENDED = "its process ended, or did not end in time: an endless loop, or more memory than it may have?"
 
 

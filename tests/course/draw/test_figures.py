@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from ir50p_lab.bench import Recording
 from ir50p_lab.course.draw.arm3d import ArmView, SideView
-from ir50p_lab.course.draw.style import figure_style, new_figure, subplots
+from ir50p_lab.course.draw.style import figure_style, new_figure, origin, subplots
 from ir50p_lab.errors import InputError
 from ir50p_lab.modelling import IR50P, Arm, forward_kinematics, frames
 
@@ -25,6 +26,14 @@ def test_a_new_figure_leaves_matplotlib_as_it_was():
     assert dict(matplotlib.rcParams) == before
     figure_style()["axes.grid"] = "spoilt"
     assert figure_style()["axes.grid"] is True
+
+
+@pytest.mark.parametrize(
+    ("header", "words"),
+    [({}, "origin unknown"), ({"simulated": "true"}, "simulated arm"), ({"simulated": "false"}, "the real arm")],
+)
+def test_a_recording_says_where_it_is_from(header, words):
+    assert origin(Recording.from_arrays([0, 1], np.zeros((2, 3)), header=header)) == words
 
 
 def test_a_figure_shows_itself_sharp_and_at_its_own_size():

@@ -14,7 +14,6 @@ from ir50p_lab.identification import fit, load_excitations, process, regressor
 from ir50p_lab.modelling import IR50P, gravity, mass_matrix
 from ir50p_lab.signals import quintic
 
-pytestmark = pytest.mark.numeric
 PID_TABLES = {"kp": (289, 225, 270), "ki": (50, 10, 50), "kd": (40, 30, 30), "limit_pwm": 255}
 POSE = np.array([0, 0.7, -0.8])
 

@@ -9,8 +9,16 @@ import pytest
 
 from ir50p_lab.course.grading import sandbox
 from ir50p_lab.course.grading.submissions import submissions
+from ir50p_lab.modelling import IR50P, forward_kinematics
 
 _LIMITS = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such limits")
+
+
+def test_the_compiled_code_is_there(tmp_path):
+    """Else each student's process compiles all of it anew."""
+    forward_kinematics(IR50P, [0.1, 0.2, 0.3])
+    look = "from ir50p_lab.jit import cache_folder; print(*cache_folder().rglob('*.nbi'))"
+    assert subprocess.check_output([*sandbox.bubblewrap(tmp_path), sys.executable, "-c", look]).strip()
 
 
 def _verdict(text, seconds=60):
