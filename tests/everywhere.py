@@ -2,7 +2,7 @@
 
     python3 -m ir50p_lab test --everywhere              every leg; one that passed is not run again
     python3 -m ir50p_lab test --everywhere nehalem      one leg (further arguments go to pytest)
-    python3 -m ir50p_lab test --everywhere --turn       the written notebooks of one leg, another one for each commit
+    python3 -m ir50p_lab test --everywhere --turn       the notebooks of one leg, another one for each commit
 
 What passed is remembered in .everywhere/ and forgotten when any file that the legs read changes.
 """
