@@ -34,14 +34,14 @@ BUDGETS = FOLDERS | {"all": 17_719, "tests": 20_000, "sentences": 2_800}
 #: What was over its budget on 30 November 2026. A figure here only falls: set it to what is left after each cut.
 STILL = {
     "bench": 2384,
-    "identification": 1486,
+    "identification": 1473,
     "vision": 2282,
-    "course": 8870,
+    "course": 8843,
     "course/publishing": 698,
     "launcher": 613,
     "root": 359,
-    "all": 19_432,
-    "tests": 20_287,
+    "all": 19_392,
+    "tests": 20_250,
 }
 _NO_CODE = {
     tokenize.COMMENT,

@@ -19,6 +19,6 @@ __getattr__, __dir__, __all__ = lazy.attach(
         "response_fit": ["FOPDT", "fit_fopdt"],
         "regression": ["LeastSquares", "least_squares"],
         "single_joint": ["JointFit", "fit_joint"],
-        "validation": ["Validation", "Whiteness", "nrmse_fit", "validate", "whiteness"],
+        "validation": ["Validation", "nrmse_fit", "validate"],
     },
 )

@@ -1,6 +1,5 @@
-"""How good a model is on data it has not seen, as in Table 4.4 on raw PWM; and whether its residuals are white."""
+"""How good a model is on data it has not seen, as in Table 4.4 on raw PWM."""
 
-from collections import namedtuple
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,29 +91,3 @@ def compare_signals(t, measured, predicted, of):
     """Return the Validation of "u" or "q" (`of`); t (n,) s, measured and predicted (n, 3)."""
     rms, fit = nrmse_fit(measured, predicted)
     return Validation(rms=rms, fit=fit, t=t, measured=measured, predicted=predicted, of=of)
-
-
-class Whiteness(namedtuple("Whiteness", "lags correlation bound")):
-    """Autocorrelation of residuals, column by column.
-
-    lags: (m,) samples; correlation: (m, k), of samples that far apart; bound: 2.58/sqrt(n), within which 99 in 100 lie
-    if the residuals are white. What a good model leaves is noise, which no earlier sample predicts.
-    """
-
-
-def whiteness(residuals):
-    """Return the autocorrelation r_m = sum e_k e_k+m/sum e_k^2 of residuals, for the first min(50, n/5) lags.
-
-    Args: residuals: (n,) or (n, k), evenly sampled; their mean is removed. Returns: Whiteness. Raises InputError for
-    fewer than 20 samples, numbers that are not finite, and constant residuals.
-    """
-    e = finite("residuals", residuals)
-    e = e[:, None] if e.ndim == 1 else e
-    if e.ndim != 2 or len(e) < 20:
-        raise InputError(f"residuals have shape {np.shape(residuals)}: give 20 or more, (n,) or (n, k), time first")
-    if (np.ptp(e, axis=0) <= 1e-12 * np.abs(e).max(axis=0)).any():
-        raise InputError("a column of residuals is constant: there is nothing to correlate")
-    e = e - e.mean(axis=0)
-    lags = np.arange(1, min(50, len(e) // 5) + 1)
-    r = np.array([(e[m:] * e[:-m]).sum(axis=0) for m in lags]) / (e**2).sum(axis=0)
-    return Whiteness(lags, r, float(2.58 / np.sqrt(len(e))))

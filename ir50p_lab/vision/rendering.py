@@ -157,7 +157,7 @@ def render_scene(scene, seed=0):
     It is the same for the same scene and `seed` of the noise.
     """
     w, h = scene.pinhole.size
-    light = _light(scene).reshape(h, _SUB, w, _SUB, 3).mean(axis=(1, 3))
+    light = cv2.resize(_light(scene).reshape(h * _SUB, w * _SUB, 3), (w, h), interpolation=cv2.INTER_AREA)
     light = cv2.GaussianBlur(light, (0, 0), 0.5) * np.float32(scene.exposure)
     noise = np.random.default_rng(seed).standard_normal(light.shape, dtype=np.float32)
     light = np.clip(np.minimum(light, 1) + np.sqrt(0.003**2 + 0.012**2 * light) * noise, 0, 1)
@@ -170,11 +170,12 @@ def render_scene(scene, seed=0):
 
 @functools.lru_cache(maxsize=4)
 def _rays(pinhole):
-    """Directions (3, n) float32 of all rays, z = 1, row by row (kept for the next picture of the same camera)."""
+    """Unit vectors (3, n) float32 of all rays, row by row (kept for the next picture of the same camera)."""
     w, h = pinhole.size
     y, x = ((np.arange(n * _SUB) + 0.5) / _SUB - 0.5 for n in (h, w))
     xy = pinhole.undistort_points(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
-    return np.float32([*xy.T, np.ones(len(xy))])
+    rays = np.array([*xy.T, np.ones(len(xy))])
+    return np.float32(rays / np.linalg.norm(rays, axis=0))
 
 
 def _light(scene):
@@ -191,11 +192,11 @@ def _light(scene):
     if on.any():
         light[on] = _table(scene, X[on], Y[on])
     depth = np.where(on, depth, np.float32(np.inf))
-    squared = (rays * rays).sum(axis=0)
     for thing in (*scene.objects, *scene.arm):
         a, b = (R @ np.float32(end) + t for end in (thing.start, thing.end))
         middle, reach = (a + b) / 2, np.linalg.norm(b - a) / 2 + thing.radius
-        near = np.flatnonzero((middle @ rays) ** 2 >= (middle @ middle - reach**2) * squared)
+        cone = np.sqrt(max(middle @ middle - reach**2, 0))  # around the thing, from the camera
+        near = np.flatnonzero(middle @ rays >= cone)
         d = _hit(rays[:, near], a, b, thing.radius)
         closer = d < depth[near] * 1.0001
         near, d = near[closer], d[closer]
@@ -203,7 +204,7 @@ def _light(scene):
         from_a, axis = d * rays[:, near] - a[:, None], (b - a)[:, None]
         along = np.clip((axis * from_a).sum(axis=0) / max(float((axis**2).sum()), 1e-12), 0, 1)
         normal = R.T @ ((from_a - along * axis) / thing.radius)
-        light[near] = _shaded(thing, normal, -ways[:, near] / np.linalg.norm(ways[:, near], axis=0))
+        light[near] = _shaded(thing, normal, -ways[:, near])
     return light
 
 
@@ -220,18 +221,17 @@ def _shaded(thing, normal, view):
 
 
 def _hit(rays, a, b, radius):
-    """Depth (n,) at which rays (3, n) meet a stick with round ends a, b (3,), inf where they do not."""
-    best, square = np.full(rays.shape[1], np.inf, np.float32), (rays * rays).sum(axis=0)
+    """Distance (n,) at which unit vectors (3, n) meet a stick with round ends a, b (3,), inf where they do not."""
+    best = np.full(rays.shape[1], np.inf, np.float32)
     with np.errstate(invalid="ignore", divide="ignore"):
         for end in (a, b):
             along = end @ rays
-            root = np.sqrt(along**2 - square * (end @ end - radius**2))
-            best = np.fmin(best, (along - root) / square)
+            best = np.fmin(best, along - np.sqrt(along**2 - (end @ end - radius**2)))
         length = np.linalg.norm(b - a)
         if length > 1e-6:
             u = (b - a) / length
-            ud, ua, A = u @ rays, u @ a, square - (u @ rays) ** 2
-            B = a @ rays - ud * ua
+            ud, ua = u @ rays, u @ a
+            A, B = 1 - ud**2, a @ rays - ud * ua
             d = (B - np.sqrt(B * B - A * (a @ a - ua * ua - radius**2))) / A
             best = np.fmin(best, np.where((d * ud - ua >= 0) & (d * ud - ua <= length), d, np.inf))
     return best
@@ -301,8 +301,7 @@ def _tile():
 def _interpolated(values, u, v):
     """`values` (rows, columns) interpolated at columns u and rows v (n,); beyond its edges the array repeats."""
     n, lines = len(u), -(-len(u) // 4096)  # rows of 4096: OpenCV refuses very long ones
-    places = ((one % size).astype(np.float32) for one, size in ((u, values.shape[1]), (v, values.shape[0])))
-    u, v = (np.resize(one, (lines, 4096)) for one in places)
+    u, v = (np.resize(np.float32(one), (lines, 4096)) for one in (u, v))
     return cv2.remap(values, u, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_WRAP).ravel()[:n]
 
 

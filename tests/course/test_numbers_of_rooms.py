@@ -2,7 +2,6 @@
 
 import re
 import warnings
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from ir50p_lab.bench import SimulatedBench
 from ir50p_lab.controllers import PID, ContinuousPID
 from ir50p_lab.course import solution
 from ir50p_lab.course.checking.numbers import everything, find, grade_number
-from ir50p_lab.modelling import IR50P, THESIS_A, Friction, energy, inverse_dynamics
+from ir50p_lab.modelling import IR50P, THESIS_A, energy, inverse_dynamics
 from ir50p_lab.signals import hold, low_pass, quintic
 from ir50p_lab.simulation import simulate
 
@@ -151,7 +150,7 @@ ROUTES = {
     "ct-3": sag,
     "calib-4": read_too_far,
 }
-BY_TESTS = {"sim-2", "bench-5", "ident-2"}  # below
+BY_TESTS = {"bench-5", "ident-2"}  # below
 
 
 @pytest.mark.parametrize("name", ROUTES)
@@ -161,18 +160,6 @@ def test_by_another_route(name):
 
 def test_no_exercise_is_without_another_route():
     assert {*ROUTES, *BY_TESTS} == {number.name for number in ALL}
-
-
-@pytest.mark.parametrize("inertia", [0.02, 0.4])
-def test_a_joint_with_coulomb_friction_stops_there(inertia):
-    """sim-2; the question gives no inertia: the rest must not depend on it."""
-    held = 1e4  # N m: friction of the other joints
-    more = {"Ixx": (1, 0, 0), "Iyy": (1, 0.01, 0.01), "Izz": (inertia, 0.01, 0.01)}
-    arm = replace(IR50P, friction=Friction(fc=(0.1, held, held)), **more)
-    pid = PID(kp=(2, 0, 0), period=1e-4)
-    run = simulate(arm, pid, (0, 0, 0), q0=(0.37, 0, 0), duration=20, period=1e-4, step=1e-4)
-    assert (run.qd[-1] == 0).all()
-    assert run.q[-1, 0] == pytest.approx(solution("sim-2"), abs=5e-4)
 
 
 @pytest.mark.parametrize(("share", "moves"), [(0.8, False), (1.3, True)])

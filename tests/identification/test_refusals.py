@@ -44,7 +44,6 @@ BAD = {
     "fit_joint": [(T, NAN_Q[:, 0], U[:, 0]), (T[::-1], Q[:, 0], U[:, 0]), (T[:5], Q[:5, 0], U[:5, 0]), (T, Q, U)],
     "nrmse_fit": [(NAN_Q, Q), (Q, Q[:5]), (0 * Q, Q)],
     "validate": [(TH, Run(q=NAN_Q)), (TH[:1], Run()), (TH, Run(t=T[::-1]))],
-    "whiteness": [(NAN_Q,), (Q[:5],), (0 * Q,)],
 }
 KEYWORDS = {
     "output_error": {"progress": False},

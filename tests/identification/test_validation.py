@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from refusals import refused
 
-from ir50p_lab.identification import nrmse_fit, regressor, validate, whiteness
+from ir50p_lab.identification import nrmse_fit, regressor, validate
 from ir50p_lab.modelling import IR50P
 from ir50p_lab.signals import at_rest, fourier
 
@@ -64,29 +64,6 @@ def test_delay_is_taken_into_account(delay):
     assert (validate(THETA, record, cutoff_hz=8.0, held=False).fit < 97).all()
 
 
-# --- whiteness
-
-
-def test_white_noise_is_white_and_nothing_else_is():
-    tests = [whiteness(np.random.default_rng(seed).normal(size=500)) for seed in range(300)]
-    assert np.mean([abs(test.correlation) < test.bound for test in tests]) == pytest.approx(0.99, abs=0.005)
-    for phi in (0.3, 0.6, 0.95):
-        e = np.random.default_rng(1).normal(size=(2000, 2))
-        for k in range(1, 2000):
-            e[k, 1] += phi * e[k - 1, 1]
-        found = whiteness(e)
-        assert (abs(found.correlation[0]) < found.bound).tolist() == [True, False]
-        assert found.correlation[0, 1] == pytest.approx(phi, abs=0.06)
-
-
-def test_autocorrelation_by_hand():
-    e = np.random.default_rng(0).normal(size=100)
-    found = whiteness(e)
-    x = e - e.mean()
-    np.testing.assert_allclose(found.correlation[:, 0], [x[k:] @ x[:-k] / (x @ x) for k in range(1, 21)])
-    np.testing.assert_array_equal(found.lags, np.arange(1, 21))
-
-
 # --- refusals
 
 
@@ -109,15 +86,3 @@ def test_bad_input():
 )
 def test_bad_columns(y, p, words):
     refused(words, nrmse_fit, y, p)
-
-
-@pytest.mark.parametrize(
-    "e, words",
-    [
-        (np.zeros(5), "20 or more"),
-        (np.full(50, np.inf), "residuals holds inf at index 0"),
-        (np.ones(50), "constant"),
-    ],
-)
-def test_bad_residuals(e, words):
-    refused(words, whiteness, e)

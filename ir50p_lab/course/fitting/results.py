@@ -1,6 +1,7 @@
 """Figures of notebook 13: what each step of signal processing brings, and whether residuals are white."""
 
 import numpy as np
+from matplotlib.mlab import detrend_mean
 
 from ir50p_lab.course.draw.style import COLOURS, JOINT_LABELS, JOINTS, subplots
 
@@ -17,17 +18,18 @@ def ablation_figure(names, fits):
     return figure
 
 
-def whiteness_figure(tests):
+def whiteness_figure(residuals):
     """Draw the autocorrelation of the residuals of joint 2 for several models. Returns: LabFigure.
 
-    Args: tests: {name: Whiteness}, of residuals 10 ms apart.
+    Grey: 2.58/sqrt(n), within which 99 in 100 lie if the residuals are white. Args: residuals: {name: (n, 3)}, 10 ms
+    apart.
     """
     figure, ax = subplots(9.0, 3.2)
-    for (name, test), colour in zip(tests.items(), ("orange", "blue"), strict=False):
-        lags = 10 * np.r_[0, test.lags]
-        ax.plot(lags, np.r_[1, test.correlation[:, 1]], ".-", ms=4, color=COLOURS[colour], label=name)
-    ax.axhspan(-test.bound, test.bound, color=COLOURS["grey"], alpha=0.4, lw=0)
-    ax.set(xlabel="time between two residuals [ms]", ylabel="their correlation [1]", ylim=(-0.5, 1.05))
+    for (name, left), colour in zip(residuals.items(), ("orange", "blue"), strict=False):
+        look = {"linestyle": "-", "marker": ".", "markersize": 4, "color": COLOURS[colour]}
+        ax.acorr(left[:, 1], detrend=detrend_mean, maxlags=50, usevlines=False, label=name, **look)
+        ax.axhspan(*2.58 / np.sqrt(len(left)) * np.array([-1, 1]), color=COLOURS["grey"], alpha=0.2, lw=0)
+    ax.set(xlim=(0, 50), xlabel="time between two residuals [samples of 10 ms]", ylabel="their correlation [1]")
     ax.set_title("Joint 2: grey, as white noise would be; a model could still learn what is above")
     ax.legend(fontsize=8)
     return figure

@@ -1,4 +1,4 @@
-"""Numbers of notebooks 06 and 07: the shortest time of a motion, where a joint sticks, a motor's voltage."""
+"""Numbers of notebooks 06 and 07: the shortest time of a motion, a motor's voltage."""
 
 import numpy as np
 
@@ -7,20 +7,6 @@ from ir50p_lab.modelling import Actuators
 
 # traj-1: the shortest quintic that keeps each joint below a speed.
 _TIMES = 15 / 8 * np.array([0.343 / 2.5, 1.523 / 1.1, 1.247 / 1.3])  # s, of each joint: rad, rad/s
-
-# sim-2: one joint on a P controller with Coulomb friction, let go away from its set point.
-_KP, _FC, _START = 2.0, 0.1, 0.37  # N m/rad, N m, rad
-
-
-def _rest(start, lost, band):
-    """Where the swings end: each turns `lost` rad nearer to the set point; at rest within `band` rad."""
-    angle = start
-    while abs(angle) > band:
-        angle = -np.sign(angle) * (abs(angle) - lost)
-    return angle
-
-
-_RIGHT_REST = _rest(_START, 2 * _FC / _KP, _FC / _KP)
 
 # dyn-5: one motor with gear.
 _MOTOR = Actuators(N=(50,) * 3, Jm=(8e-5,) * 3, kt=(0.05,) * 3, ke=(0.05,) * 3, Ra=(4.0,) * 3, V=24)
@@ -42,27 +28,6 @@ NUMBERS = (
             "That is the waist's time; all three have to keep their speed.": _TIMES[0],
             "That is the elbow's time; another joint needs longer.": _TIMES[2],
             "The joints move at the same time: their times are not added.": np.sum(_TIMES),
-        },
-    ),
-    Number(
-        "sim-2",
-        "07_friction_and_motors",
-        "where a joint on a spring of 2 N m/rad, with Coulomb friction of 0.1 N m, stops when let go 0.37 rad beyond"
-        " its target",
-        _RIGHT_REST,
-        unit="rad",
-        tolerance=1e-3,
-        why="Within 0.05 rad of the target, friction over spring, it may rest anywhere: dry friction leaves an error.",
-        mistakes={
-            "Within 0.05 rad of its target the spring is too weak to move it: it need not get there.": 0.0,
-            "That is the first turning point; the spring pulls it back from there.": 2 * _FC / _KP - _START,
-            "Each half swing costs 0.1 rad: friction moves its centre by 0.05 rad, and a swing has two sides.": (
-                _rest(_START, _FC / _KP, _FC / _KP)
-            ),
-            "That is how far out it may rest; follow the turning points until one is inside.": _FC / _KP,
-            "There the spring still pulls harder than friction: it swings once more.": (
-                _rest(_START, 2 * _FC / _KP, 2 * _FC / _KP)
-            ),
         },
     ),
     Number(
