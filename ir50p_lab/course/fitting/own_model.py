@@ -94,7 +94,7 @@ def mass_figure(models, truth=None):
         (theta, {"color": COLOURS[colour], "label": label})
         for (label, theta), colour in zip(models.items(), ("blue", "orange", "green"), strict=False)
     ]
-    for theta, line in drawn + ([(truth, SETPOINT)] if truth is not None else []):
+    for theta, line in drawn + ([(truth, SETPOINT | {"label": "as drawn"})] if truth is not None else []):
         masses = [mass_of(theta, np.array([0, 0.4, angle])) for angle in elbow]
         left.plot(elbow, [M[1, 1] for M in masses], **line)
         right.plot(elbow, [np.linalg.eigvals(M).real.min() for M in masses], **line)
@@ -102,6 +102,6 @@ def mass_figure(models, truth=None):
         ax.axhline(0, color=COLOURS["grey"], lw=0.8)
         ax.set(xlabel="angle of the elbow [rad]")
     left.set(ylabel="M22 [counts s²/rad]", title="The shoulder's own inertia")
-    right.set(ylabel="least eigenvalue of M [counts s²/rad]", title="Below 0 no arm can be")
+    right.set(ylabel="least eigenvalue of M [counts s²/rad]", title="No arm can be below 0")
     left.legend(fontsize=8)
     return figure

@@ -30,6 +30,6 @@ def whiteness_figure(residuals):
         ax.acorr(left[:, 1], detrend=detrend_mean, maxlags=50, usevlines=False, label=name, **look)
         ax.axhspan(*2.58 / np.sqrt(len(left)) * np.array([-1, 1]), color=COLOURS["grey"], alpha=0.2, lw=0)
     ax.set(xlim=(0, 50), xlabel="time between two residuals [samples of 10 ms]", ylabel="their correlation [1]")
-    ax.set_title("Joint 2: grey, as white noise would be; a model could still learn what is above")
+    ax.set_title("Joint 2: outside the grey band, something is left to learn")
     ax.legend(fontsize=8)
     return figure
