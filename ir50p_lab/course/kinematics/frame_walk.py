@@ -18,6 +18,8 @@ def walk(arm, q):
     figure = new_figure(7.5, 5.2, projection="3d")
     ArmView(figure.axes[0], arm, q, thickness=5)
     figure.axes[0].view_init(elev=22, azim=-30)  # no axis of the walker hides another
+    for line in figure.axes[0].lines:
+        line.set_alpha(0.25)  # links and axes of frames have the same colours
     walker = FrameView(figure.axes[0], np.eye(4), length=0.3 * arm.reach)
     rows = dh_table(arm, q)  # theta, d, a, alpha a joint
 

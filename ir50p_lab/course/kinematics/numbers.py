@@ -5,7 +5,7 @@ import numpy as np
 from ir50p_lab.course.checking.number import Number
 from ir50p_lab.modelling import IR50P, jacobian, rot_z
 
-# pose-3: frame {B} stands at t in {A}, turned by 90 degrees about z.
+# pose-3: frame B stands at t in A, turned by 90 degrees about z.
 _T = np.array([0.3, 0.1, 0.2])
 _R = rot_z(np.pi / 2)
 
@@ -20,17 +20,17 @@ NUMBERS = (
     Number(
         "pose-3",
         "01_pose_and_forward_kinematics",
-        "the coordinates in {B} of the origin of {A}, where {B} stands at t = (0.3, 0.1, 0.2) m in {A} and is "
+        "the coordinates in B of the origin of A, where B stands at t = (0.3, 0.1, 0.2) m in A and is "
         "turned by 90 degrees about z",
         -_R.T @ _T,
         unit="m",
         tolerance=1e-3,
         because="a millimetre is what this arm can resolve",
-        why="It is the last column of the inverse: -R^T t, the way back, measured along the axes of {B}.",
+        why="It is the last column of the inverse: -R^T t, the way back, measured along the axes of B.",
         mistakes={
-            "That is -t, still measured along the axes of {A}; the answer needs those of {B}.": -_T,
-            "That is -R t; coordinates of {A} go to {B} with the transposed matrix.": -_R @ _T,
-            "That points from {A} to {B}; the question is where {A} lies, seen from {B}.": _R.T @ _T,
+            "That is -t, still measured along the axes of A; the answer needs those of B.": -_T,
+            "That is -R t; coordinates of A go to B with the transposed matrix.": -_R @ _T,
+            "That points from A to B; the question is where A lies, seen from B.": _R.T @ _T,
             "The angle went in as 90 rad; the functions take radians.": -rot_z(90.0).T @ _T,
         },
     ),
