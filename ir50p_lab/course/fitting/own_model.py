@@ -90,10 +90,7 @@ def mass_figure(models, truth=None):
     """
     figure, left, right = subplots(9.6, 3.6, cols=2)
     elbow = np.linspace(-2.4, 0.5, 30)
-    drawn = [
-        (theta, {"color": COLOURS[colour], "label": label})
-        for (label, theta), colour in zip(models.items(), ("blue", "orange", "green"), strict=False)
-    ]
+    drawn = [(theta, {"label": label}) for label, theta in models.items()]
     for theta, line in drawn + ([(truth, SETPOINT | {"label": "as drawn"})] if truth is not None else []):
         masses = [mass_of(theta, np.array([0, 0.4, angle])) for angle in elbow]
         left.plot(elbow, [M[1, 1] for M in masses], **line)

@@ -25,10 +25,9 @@ def whiteness_figure(residuals):
     apart.
     """
     figure, ax = subplots(9.0, 3.2)
-    for (name, left), colour in zip(residuals.items(), ("orange", "blue"), strict=False):
-        look = {"linestyle": "-", "marker": ".", "markersize": 4, "color": COLOURS[colour]}
-        ax.acorr(left[:, 1], detrend=detrend_mean, maxlags=50, usevlines=False, label=name, **look)
-        ax.axhspan(*2.58 / np.sqrt(len(left)) * np.array([-1, 1]), color=COLOURS["grey"], alpha=0.2, lw=0)
+    for name, left in residuals.items():
+        ax.acorr(left[:, 1], detrend=detrend_mean, maxlags=50, usevlines=False, linestyle="-", marker=".", label=name)
+    ax.axhspan(*np.array([-2.58, 2.58]) / np.sqrt(len(left)), color=COLOURS["grey"], alpha=0.3, lw=0, label="white")
     ax.set(xlim=(0, 50), xlabel="time between two residuals [samples of 10 ms]", ylabel="their correlation [1]")
     ax.set_title("Joint 2: outside the grey band, something is left to learn")
     ax.legend(fontsize=8)
