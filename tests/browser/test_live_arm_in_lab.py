@@ -60,7 +60,7 @@ def drag_tip(page, number, right, up, steps=8):
 def test_a_slider_moves_the_arm_by_key_and_lab_takes_none_away(notebook):
     show(notebook, 0)
     cell = notebook.evaluate("() => document.querySelectorAll('.jp-Cell.jp-mod-active')[0]?.id")
-    before = angles(notebook, 0)
+    before, picture = angles(notebook, 0), pixels(notebook, 0)
     slider = notebook.locator(".la").nth(0).get_by_label("joint 2 in degrees")
     slider.focus()
     for _ in range(5):
@@ -69,6 +69,7 @@ def test_a_slider_moves_the_arm_by_key_and_lab_takes_none_away(notebook):
     degrees = float(slider.input_value())
     assert degrees == pytest.approx(np.degrees(before[1]) + 5, abs=0.51)
     assert angles(notebook, 0)[1] == pytest.approx(np.radians(degrees), abs=1e-9)
+    assert pixels(notebook, 0) != picture
     assert notebook.evaluate("() => document.querySelectorAll('.jp-Cell.jp-mod-active')[0]?.id") == cell
     # the tip that the page names is the one of the angles shown, and the picture has the hand there
     named = notebook.evaluate(f"() => {VIEW.format(0)}.scene.tipAt")
@@ -92,8 +93,7 @@ def test_the_mouse_turns_the_view_and_leaves_the_arm(notebook):
     notebook.mouse.move(box["x"] + 200, box["y"] + 260, steps=5)
     notebook.mouse.up()
     notebook.wait_for_timeout(400)
-    turned = pixels(notebook, 0)
-    assert turned != picture
+    assert (turned := pixels(notebook, 0)) != picture
     notebook.keyboard.press("ArrowLeft")  # the view has the focus now
     notebook.wait_for_timeout(400)
     assert pixels(notebook, 0) != turned
@@ -103,9 +103,11 @@ def test_the_mouse_turns_the_view_and_leaves_the_arm(notebook):
 @pytest.mark.parametrize("number", [0, 1], ids=["in the browser", "by the student's Python"])
 def test_the_tip_follows_the_hand(notebook, number):
     show(notebook, number)
+    picture = pixels(notebook, number)
     missed, note = drag_tip(notebook, number, -40, 30)
-    assert np.abs(missed).max() < 2 and note == ""
+    assert np.abs(missed).max() < 2 and note == "" and pixels(notebook, number) != picture
     missed, note = drag_tip(notebook, number, 500, 100)
+    assert np.abs(missed).max() > 50
     assert ("out of reach by" if number == 0 else "no solution here: the nearest point is") in note
 
 
@@ -118,9 +120,7 @@ def test_a_wrong_frame_draws_a_wrong_arm(notebook):
     notebook.locator(".la").nth(2).get_by_label("joint 2 in degrees").focus()
     notebook.keyboard.press("ArrowRight")  # asks the kernel for frames
     notebook.wait_for_function(
-        f"(old) => Math.hypot(...{VIEW.format(2)}.scene.tipAt.map((v, i) => v - old[i])) > 1e-3",
-        arg=drawn,
-        timeout=5000,
+        f"old => Math.hypot(...{VIEW.format(2)}.scene.tipAt.map((v, i) => v - old[i])) > 1e-3", arg=drawn, timeout=5000
     )
 
 
