@@ -12,8 +12,8 @@ from pathlib import Path
 import nbformat
 import numpy as np
 import solutions
-from conftest import running_lab
-from test_live_arm_in_lab import KERNEL_IDLE, VIEW, drag_tip, show
+from conftest import KERNEL_IDLE, open_in_lab, running_lab
+from test_live_arm_in_lab import VIEW, drag_tip, show
 
 from ir50p_lab.course.lab_book import names
 
@@ -53,8 +53,7 @@ def go_to(page, name):
 
 def enter(page, address):
     """Open the lab on the first notebook."""
-    page.goto(address.format(NOTEBOOKS[0].name), wait_until="commit")
-    page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+    open_in_lab(page, address.format(NOTEBOOKS[0].name))
 
 
 def spoilt(name):

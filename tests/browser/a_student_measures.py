@@ -12,8 +12,7 @@ import pytest
 import solutions
 from a_student_keeps_all import run
 from a_student_tunes import PLUG_IN, ROOT
-from conftest import running_lab
-from test_live_arm_in_lab import KERNEL_IDLE
+from conftest import open_in_lab, running_lab
 
 NOTEBOOK = ROOT / "notebooks" / "10_bench_measure.ipynb"
 #: What is handed in first: a solution, spoilt (what in it, by what, words of what `check` says).
@@ -45,8 +44,7 @@ def opened(browser, path, home):
     context = browser.new_context(viewport={"width": 1300, "height": 1000})
     page = context.new_page()
     with running_lab(home, IR50P_HOME=str(home / "mine")) as (address, _):
-        page.goto(address.format(path.name), wait_until="commit")
-        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+        open_in_lab(page, address.format(path.name))
         yield page
     context.close()
 

@@ -12,8 +12,7 @@ import nbformat
 import pytest
 import solutions
 from a_student_keeps_all import go_to, run
-from conftest import running_lab
-from test_live_arm_in_lab import KERNEL_IDLE
+from conftest import open_in_lab, running_lab
 
 ROOT = Path(__file__).parents[2]
 PLUG_IN = f"""
@@ -107,8 +106,7 @@ def test_a_pid_from_its_first_line_to_the_contest(browser, tmp_path):
     context = browser.new_context(viewport={"width": 1300, "height": 1000})
     page = context.new_page()
     with running_lab(tmp_path, IR50P_HOME=str(mine)) as (address, _):
-        page.goto(address.format(paths[0].name), wait_until="commit")
-        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+        open_in_lab(page, address.format(paths[0].name))
         driven = go_through(page, paths[0])
         replayed = run(page, 1, REPLAY)
         go_through(page, paths[1])

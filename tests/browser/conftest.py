@@ -12,11 +12,15 @@ import urllib.request
 from contextlib import contextmanager
 from pathlib import Path
 
+import nbformat
 import pytest
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 ARGUMENTS = ["--no-sandbox", "--disable-dev-shm-usage", "--disable-background-networking", "--disable-component-update",
              "--disable-renderer-backgrounding", "--disable-background-timer-throttling"]  # fmt: skip
+
+KERNEL_IDLE = "() => window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel?.status === 'idle'"
+RUN_ALL = "() => { jupyterapp.commands.execute('notebook:run-all-cells'); }"
 
 
 @pytest.fixture(scope="session")
@@ -103,6 +107,19 @@ def running_lab(home, app="jupyterlab", **variables):
         except subprocess.TimeoutExpired:  # a busy machine: it waits for its kernels
             server.kill()
             server.wait()
+
+
+def write_notebook(path, *cells):
+    """Write a notebook of code cells for this kernel."""
+    kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    cells = list(map(nbformat.v4.new_code_cell, cells))
+    nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": kernel}), path)
+
+
+def open_in_lab(page, address):
+    """Open a notebook, and wait until its kernel is idle."""
+    page.goto(address, wait_until="commit")
+    page.wait_for_function(KERNEL_IDLE, timeout=90_000)
 
 
 def _wait_for(address, server, log):

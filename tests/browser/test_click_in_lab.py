@@ -2,9 +2,7 @@
 
 import re
 
-import nbformat
-from conftest import running_lab
-from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL
+from conftest import RUN_ALL, open_in_lab, running_lab, write_notebook
 
 CELL = """import numpy as np
 from ir50p_lab.course import PictureView
@@ -18,14 +16,11 @@ view"""
 
 
 def test_a_click_names_its_pixel(browser, tmp_path):
-    kernel = {"name": "python3", "display_name": "Python 3"}
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(CELL)], metadata={"kernelspec": kernel})
-    nbformat.write(notebook, tmp_path / "one.ipynb")
+    write_notebook(tmp_path / "one.ipynb", CELL)
     with running_lab(tmp_path) as (address, _):
         context = browser.new_context()
         page = context.new_page()
-        page.goto(address.format("one.ipynb"), wait_until="commit")
-        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+        open_in_lab(page, address.format("one.ipynb"))
         page.evaluate(RUN_ALL)
         picture = page.get_by_alt_text("a red field").first
         picture.wait_for(timeout=90_000)

@@ -1,9 +1,7 @@
 """What outputs say can be read in JupyterLab's light theme and in its dark one."""
 
-import nbformat
 import pytest
-from conftest import running_lab
-from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL
+from conftest import RUN_ALL, open_in_lab, running_lab, write_notebook
 
 CELLS = [
     "from ir50p_lab.course import check, my_robot, predict\n"
@@ -52,14 +50,10 @@ FAINT = """() => {
 def shown(browser, tmp_path_factory):
     """A page of all kinds of outputs in JupyterLab."""
     home = tmp_path_factory.mktemp("lab")
-    kernel = {"name": "python3", "display_name": "Python 3"}
-    cells = list(map(nbformat.v4.new_code_cell, CELLS))
-    notebook = nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": kernel})
-    nbformat.write(notebook, home / "outputs.ipynb")
+    write_notebook(home / "outputs.ipynb", *CELLS)
     with running_lab(home, IR50P_HOME=str(home)) as (address, _):
         page = browser.new_context(viewport={"width": 1300, "height": 1000}).new_page()
-        page.goto(address.format("outputs.ipynb"), wait_until="commit")
-        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+        open_in_lab(page, address.format("outputs.ipynb"))
         page.evaluate(RUN_ALL)
         page.get_by_text("all shown").last.wait_for(timeout=120_000)
         page.wait_for_function("() => document.querySelector('.la')?.liveArm", timeout=60_000)

@@ -7,13 +7,11 @@ import re
 from pathlib import Path
 
 import cv2
-import nbformat
 import numpy as np
 import pytest
 from a_student_keeps_all import run
-from conftest import ARGUMENTS, CHROMIUM, running_lab
+from conftest import ARGUMENTS, CHROMIUM, open_in_lab, running_lab, write_notebook
 from PIL import Image
-from test_live_arm_in_lab import KERNEL_IDLE
 
 import ir50p_lab.vision
 from ir50p_lab.course.publishing.export import export
@@ -164,15 +162,12 @@ def test_a_notebook_sees_by_its_browser(with_a_camera, video, tmp_path):
     home = tmp_path / "lab"
     home.mkdir()
     path = home / "camera.ipynb"
-    cells = [nbformat.v4.new_code_cell("pass") for _ in range(4)]
-    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
-    nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata=kernel), path)
+    write_notebook(path, *["pass"] * 4)
     context = with_a_camera.new_context(permissions=["camera"], viewport={"width": 1200, "height": 1000})
     context.add_init_script(TRACKS)
     page = context.new_page()
     with running_lab(home) as (address, _):
-        page.goto(address.format(path.name), wait_until="commit")
-        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+        open_in_lab(page, address.format(path.name))
         said = run(page, 0, OPEN)
         assert "CameraError the page answers between cells: read it in the next cell" in said
         comes(page)

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from a_student_keeps_all import run
-from conftest import running_lab
-from test_live_arm_in_lab import KERNEL_IDLE, RUN_ALL, VIEW, show
+from conftest import RUN_ALL, open_in_lab, running_lab
+from test_live_arm_in_lab import VIEW, show
 
 THE_VIEW = VIEW.format(0)
 MIDDLE_OF_LINK_2 = "view.scene.joints[1].map((v, i) => (v + view.scene.joints[2][i]) / 2)"
@@ -23,8 +23,7 @@ def pushed(browser, tmp_path_factory):
     with running_lab(home) as (address, _):
         context = browser.new_context(viewport={"width": 1300, "height": 1000}, has_touch=True)
         page = context.new_page()
-        page.goto(address.format("push.ipynb"), wait_until="commit")
-        page.wait_for_function(KERNEL_IDLE, timeout=90_000)
+        open_in_lab(page, address.format("push.ipynb"))
         page.evaluate(RUN_ALL)
         page.wait_for_function(
             f"() => document.querySelector('.la')?.liveArm && {THE_VIEW}.hand.mostPush", timeout=120_000

@@ -16,7 +16,7 @@ def grid_figure(picture, H, title="Lines 50 mm apart on the table"):
     lines = [([x, x], across[[0, -1]]) for x in along] + [(along[[0, -1]], [y, y]) for y in across]
     for x, y in lines:
         u, v, w = np.linalg.solve(H, np.array([x, y, np.ones(2)]))
-        ax.plot(u / w, v / w, color="white", linewidth=0.8)
+        ax.plot(u / w, v / w, color=COLOURS["orange"], linewidth=0.8)
     h, w = picture.shape[:2]
     ax.set(xlim=(-0.5, w - 0.5), ylim=(h - 0.5, -0.5))
     return figure
