@@ -119,7 +119,7 @@ def test_a_wrong_frame_draws_a_wrong_arm(notebook):
     notebook.locator(".la").nth(2).get_by_label("joint 2 in degrees").focus()
     notebook.keyboard.press("ArrowRight")  # asks the kernel for frames
     notebook.wait_for_function(
-        f"old => Math.hypot(...{VIEW.format(2)}.scene.tipAt.map((v, i) => v - old[i])) > 1e-3", arg=drawn, timeout=60_000
+        f"old => Math.hypot(...{VIEW.format(2)}.scene.tipAt.map((v, i) => v - old[i])) > 1e-3", arg=drawn
     )
 
 

@@ -16,6 +16,7 @@ MARKS = {
     "benchmarks": "slow",
     "benchmarks/test_bench_speed.py": "timing",
     "browser": "ci slow",
+    "browser/test_push_in_lab.py": "timing",
     "controllers/test_computed_torque.py": "numeric",
     "controllers/test_identified_model.py": "numeric",
     "course/at_the_bench/test_bench_panel.py": "timing",
