@@ -16,6 +16,7 @@ _WAYS = {
     "08  your controller": "by_pid",
     "10  your calibration": "by_ruler",
     "12  your model": "by_model",
+    "15  your push, planned": "by_plan_and_pd",
     "18  a picture": "by_camera",
 }
 

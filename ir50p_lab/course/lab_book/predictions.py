@@ -72,9 +72,6 @@ def measured(name, value, unit="", by=""):
         value = float(value)
     except (TypeError, ValueError):
         raise LabBookError(f"{name}: a measured value is one number, got {value!r:.60}") from None
-    if by not in ("", "yours"):
-        print(f"{name}: {_say(value, unit)} ({by}: not written down)")
-        return
 
     def edit(book):
         entry = book["predictions"].setdefault(name, {})
@@ -82,15 +79,16 @@ def measured(name, value, unit="", by=""):
         entry.setdefault("unit", unit)
         return entry
 
-    entry = change(edit)
-    unit = entry["unit"]
+    own = by in ("", "yours")
+    entry = change(edit) if own else read()["predictions"].get(name, {})
+    unit, kept = entry.get("unit", unit), "" if own else f" ({by}: not written down)"
     if "guess" not in entry:
-        print(f"{name}: {_say(value, unit)}")
+        print(f"{name}: {_say(value, unit)}{kept}")
         return
     words = entry.get("words", {})
     guess, truth = (words.get(f"{number:g}", _say(number, unit)) for number in (entry["guess"], value))
-    print(f"{name}: you guessed {guess}, it is {truth}")
-    if abs(entry["guess"] - value) > entry["within"] * abs(value) and "why" not in entry:
+    print(f"{name}: you guessed {guess}, it is {truth}{kept}")
+    if own and abs(entry["guess"] - value) > entry["within"] * abs(value) and "why" not in entry:
         print(f'Why? One sentence: why("{name}", "...")')
 
 

@@ -53,12 +53,12 @@ def _tips(q, l):
 
 
 class PushAndPD:
-    """P and D of 08 (1000 and 40), plus the counts that `push(q, reference)` returns."""
+    """P and D of 08 (1000 and 40) and, if asked for, I; plus the counts that `push(q, reference)` returns."""
 
     unit = "PWM"
 
-    def __init__(self, push):
-        self.pid, self.push = my_robot.PID(kp=1000, kd=40), push
+    def __init__(self, push, ki=0):
+        self.pid, self.push = my_robot.PID(kp=1000, ki=ki, kd=40), push
         self.reset = self.pid.reset
 
     def step(self, t, q, reference):

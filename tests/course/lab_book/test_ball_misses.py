@@ -6,7 +6,7 @@ from ir50p_lab.course import lab_book
 
 
 def test_the_way_to_the_ball_is_filled_from_the_lab_book():
-    assert [text.get_text() for text in lab_book.so_far().axes[0].texts] == ["not yet"] * 10
+    assert [text.get_text() for text in lab_book.so_far().axes[0].texts] == ["not yet"] * 11
     lab_book.measured("ball.miss.by_hand", 34.2, "mm")
     lab_book.measured("ball.seconds.by_hand", 41, "s")
     lab_book.measured("ball.miss.by_formula", 1e-13, "mm")
