@@ -51,11 +51,6 @@ def go_to(page, name):
     page.wait_for_function(KERNEL_IDLE, timeout=90_000)
 
 
-def enter(page, address):
-    """Open the lab on the first notebook."""
-    open_in_lab(page, address.format(NOTEBOOKS[0].name))
-
-
 def spoilt(name):
     """A function that returns its first argument, twice."""
     arguments = [argument.arg for argument in ast.parse(solutions.source(name)).body[-1].args.args]
@@ -96,7 +91,7 @@ def test_nothing_of_a_student_is_lost(browser, tmp_path):
     page = context.new_page()
     predicted = []
     with running_lab(tmp_path, **home) as (address, server):
-        enter(page, address)
+        open_in_lab(page, address.format(NOTEBOOKS[0].name))
         for path in NOTEBOOKS:
             predicted += go_through(page, path)
             if path.name.startswith("02"):
@@ -113,7 +108,7 @@ def test_nothing_of_a_student_is_lost(browser, tmp_path):
         server.kill()
         server.wait(20)
     with running_lab(tmp_path, **home) as (address, _):
-        enter(page, address)
+        open_in_lab(page, address.format(NOTEBOOKS[0].name))
         go_to(page, NOTEBOOKS[0].name)
         said = run(page, 1, "from ir50p_lab.course import my_robot\nmy_robot.done()")
         assert all(f"'{name}'" in said for name in WRITTEN)

@@ -22,6 +22,8 @@ def test_a_guess_is_replaced_once_and_not_after_it_is_measured(capsys):
     assert said(capsys).endswith("your guess is 0.2 m, in place of 0.1 m\n")
     predict("fk.height", 0.3, "m")
     assert "stays 0.2 m" in said(capsys)
+    measured("fk.height", 0.5, by="the course's")
+    assert "you guessed 0.2 m, it is 0.5 m (the course's: not" in said(capsys) and "truth" not in entry("fk.height")
     measured("fk.height", 0.33)
     assert "you guessed 0.2 m, it is 0.33 m" in said(capsys)
     predict("not.replaced", 1)
